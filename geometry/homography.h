@@ -1,0 +1,35 @@
+// geometry/homography.h
+//
+// From the homography of a map to the 4x4 matrix that a renderer multiplies by.
+// In:   map_from_ray (H, 3x3), ray_from_world (3x4), the depth row.
+// Out:  map_from_world, (u w, v w, z w, w).   math.md 1 and 8
+#pragma once
+
+#include <Eigen/Core>
+
+#include "geometry/light.h"
+
+namespace lightfit {
+
+// Distances of the receivers from the light, along some direction, world units.
+struct DepthRange {
+  double near = 0.0;
+  double far = 0.0;
+};
+
+// Rows 1, 2 and 4 are H ray_from_world. Row 3 makes z/w grow along every ray, from 0 at the nearest
+// to 1 at the furthest receiver:
+//   point light:       z w = A (p.X) + B with w = p.X, so z = A + B / w is monotonic along a ray;
+//                      `range` bounds p.X over the receivers, near > 0.
+//   directional light: z w = A (depth - near), depth along the direction of travel;
+//                      `range` bounds depth, `w_min` is the smallest w of a receiver, so that
+//                      z <= 1 wherever w >= w_min.
+// Casters between the light and `range.near` get z < 0 and must be clamped ("pancaking",
+// Lloyd 2006, 6.4). An empty range (far <= near) is widened to have some depth.
+Eigen::Matrix4d MapFromWorld(const Eigen::Matrix3d& map_from_ray,
+                             const Eigen::Matrix<double, 3, 4>& ray_from_world,
+                             const Light& light,
+                             DepthRange range,
+                             double w_min);
+
+}  // namespace lightfit

@@ -1,0 +1,44 @@
+// optimizer/cover.h
+//
+// What one light's map must cover: the cone of rays to all receivers.
+// In:   Receivers, Light.
+// Out:  coordinates that fit the rays, their convex hull, their mean, and the range of depth.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "absl/status/statusor.h"
+#include "geometry/homography.h"
+#include "geometry/light.h"
+#include "geometry/polygon.h"
+#include "optimizer/receivers.h"
+
+namespace lightfit {
+
+struct RayCover {
+  // Normalised rays X' = N X of light-space rays X (RayFromWorld with its default frame).
+  // See NormalizeRays in geometry/ray_cone.h.
+  Eigen::Matrix3d normalized_from_ray = Eigen::Matrix3d::Identity();
+
+  // The receivers' rays as (X'_1, X'_2) / X'_3: their convex hull, the origin strictly inside.
+  Polygon hull;
+
+  // Mean of the receivers' unit rays in light space: the axis of a focused shadow map. For a
+  // directional light always (0, 0, 1).
+  Eigen::Vector3d mean_ray = Eigen::Vector3d::UnitZ();
+
+  // Bounds over the receivers, world units. Point light: of X'_3, the depth along the third row of
+  // N, which is a unit vector. Directional light: of the depth along the direction of travel.
+  DepthRange depth;
+};
+
+// The hull is that of the rays through the centres of all pixels with a surface, exactly: tiles are
+// bounded by the corners of their depth boxes, and only tiles that reach the hull are looked into.
+//
+// FailedPrecondition when receivers surround a point light, or all lie in one plane with the light.
+absl::StatusOr<RayCover> CoverReceivers(const Receivers& receivers, const Light& light);
+
+// The cover of both, in coordinates of its own. Both must be of the same light.
+absl::StatusOr<RayCover> MergeCovers(const RayCover& a, const RayCover& b, const Light& light);
+
+}  // namespace lightfit

@@ -1,0 +1,51 @@
+// optimizer/fit.h : from a read-back to one light matrix, in one call.
+//
+// In:      Readback {camera, depth, shadow bits}, Light, MapSize, FitOptions.
+// Out:     LightMatrix {map_from_world, energy, footprint statistics, trace}.
+// Flow:    Readback -> Receivers -> Samples -> Summary {T, count, cone of rays}
+//          -> axis + affine part -> LightMatrix.
+// Symbols: X ray, D = d(screen)/d(ray), H map_from_ray, p = h3 axis, w = h3.X.  docs/mathematics.md
+// Errors:  InvalidArgument: an input is wrong; the message names field, value and remedy.
+//          FailedPrecondition: the input is fine but no single map exists, or there is nothing to
+//          fit; the message names the light and what to do.
+// Threads: functions share nothing; call them from as many threads as you like.
+#pragma once
+
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/types/span.h"
+#include "geometry/light.h"
+#include "optimizer/fit_options.h"
+#include "optimizer/light_matrix.h"
+#include "optimizer/readback.h"
+#include "optimizer/summary.h"
+
+namespace lightfit {
+
+// The matrix for one light.
+absl::StatusOr<LightMatrix> FitLight(const Readback& readback,
+                                     const Light& light,
+                                     MapSize map,
+                                     const FitOptions& options = {});
+
+// The matrices for up to 32 lights of one read-back. What does not depend on the light is computed
+// once. Element i belongs to lights[i] and has its own status; an error that concerns the whole
+// read-back is returned for every light.
+std::vector<absl::StatusOr<LightMatrix>> FitLights(const Readback& readback,
+                                                   absl::Span<const Light> lights,
+                                                   MapSize map,
+                                                   const FitOptions& options = {});
+
+// The two halves of FitLight: everything the read-back has to say about this light, in about a
+// kilobyte, and the fit from that alone. Summaries of one light add (Summary::Merge). The L1 metrics
+// need the samples themselves and are refused here; statistics beyond the RMS are left at 0.
+absl::StatusOr<Summary> Summarize(const Readback& readback,
+                                  const Light& light,
+                                  const FitOptions& options = {});
+absl::StatusOr<LightMatrix> Fit(const Summary& summary,
+                                const Light& light,
+                                MapSize map,
+                                const FitOptions& options = {});
+
+}  // namespace lightfit

@@ -1,0 +1,33 @@
+#include "optimizer/light_matrix.h"
+
+#include "absl/strings/str_format.h"
+
+namespace lightfit {
+
+const char* StopReasonName(StopReason reason) {
+  switch (reason) {
+    case StopReason::kNoSearch:
+      return "no_search";
+    case StopReason::kConverged:
+      return "converged";
+    case StopReason::kRoundLimit:
+      return "round_limit";
+    case StopReason::kAxisAtLimit:
+      return "axis_at_limit";
+  }
+  return "unknown";
+}
+
+std::string LightMatrix::BriefReport() const {
+  return absl::StrFormat("%s: %dx%d, energy %.6g (start %.6g), rms %.4g px, worst %.4g px, %s",
+                         light_name,
+                         map.width,
+                         map.height,
+                         energy,
+                         energy_start,
+                         footprint.rms,
+                         footprint.worst,
+                         StopReasonName(stop_reason));
+}
+
+}  // namespace lightfit

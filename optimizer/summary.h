@@ -1,0 +1,67 @@
+// optimizer/summary.h
+//
+// Thirty-six numbers replace the samples: energy and gradient of any map in O(1).
+// In:   Samples and their RayCover.
+// Out:  Summary {tensor, weight, counts, cover}, about a kilobyte, additive.   math.md 4, (6)-(8)
+//
+// Symbols: T tensor, X normalised ray, G = D'D, p axis, [r1 r2 r3] = H^-1.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "absl/status/statusor.h"
+#include "geometry/light.h"
+#include "optimizer/cover.h"
+#include "optimizer/footprint.h"
+#include "optimizer/samples.h"
+
+namespace lightfit {
+
+// Entries (0,0), (0,1), (0,2), (1,1), (1,2), (2,2) of a symmetric 3x3 matrix.
+using SymmetricVector = Eigen::Matrix<double, 6, 1>;
+SymmetricVector ToSymmetricVector(const Eigen::Matrix3d& symmetric);
+Eigen::Matrix3d FromSymmetricVector(const SymmetricVector& entries);
+
+// T_(ab)(cd) = sum of weight X_a X_b G_cd: rows run over (ab), columns over (cd).   math.md (6)
+class EnergyTensor {
+ public:
+  EnergyTensor() : entries_(Eigen::Matrix<double, 6, 6>::Zero()) {}
+  explicit EnergyTensor(const Eigen::Matrix<double, 6, 6>& entries) : entries_(entries) {}
+
+  const Eigen::Matrix<double, 6, 6>& entries() const { return entries_; }
+
+  // sum of weight w^2 G with w = p.X: what every energy at this axis is made of.
+  Eigen::Matrix3d AtAxis(const Eigen::Vector3d& p) const;
+
+  // math.md (7) and (8): as Energy() and EnergyAndGradient() of optimizer/footprint.h.
+  double Energy(const Eigen::Matrix3d& map_from_ray) const;
+  EnergyGradient EnergyAndGradient(const Eigen::Matrix3d& map_from_ray) const;
+
+  // The tensor in coordinates X' = N X: G' = N^-T G N^-1.
+  EnergyTensor Transformed(const Eigen::Matrix3d& new_from_old) const;
+
+  // Q = sum of weight (X X') (x) G as a 9x9 matrix on z = p (x) r, index 3 a + c, so that
+  // Energy = z1'Q z1 + z2'Q z2.
+  Eigen::Matrix<double, 9, 9> AsQuadraticForm() const;
+
+ private:
+  Eigen::Matrix<double, 6, 6> entries_;
+};
+
+struct Summary {
+  EnergyTensor tensor;  // in the cover's normalised rays
+  MetricWeights metric;
+  double total_weight = 0.0;
+  SampleCounts counts;
+  RayCover cover;
+};
+
+// One vectorised pass over the samples, whose rays must be in the cover's coordinates. The result
+// does not depend on the processor's vector width.
+Summary SummarizeSamples(const Samples& samples, const RayCover& cover, const MetricWeights& metric);
+
+// The summary of both sets of samples together, for one light: tiles, frames, machines.
+// InvalidArgument if the metrics differ, FailedPrecondition if no map covers both.
+absl::StatusOr<Summary> MergeSummaries(const Summary& a, const Summary& b, const Light& light);
+
+}  // namespace lightfit
