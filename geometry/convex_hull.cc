@@ -1,10 +1,53 @@
 #include "geometry/convex_hull.h"
 
 #include <algorithm>
+#include <array>
 
 namespace lightfit {
 
+namespace {
+
+// Above this many points it pays to throw away most of the inner ones before sorting.
+constexpr size_t kFilterFrom = 32;
+
+// Removes points strictly inside the octagon of the points furthest in eight directions (Akl &
+// Toussaint 1978). None of them can be a vertex of the hull.
+void DropInnerPoints(std::vector<Eigen::Vector2d>* points) {
+  // Furthest towards -y, +x-y, +x, +x+y, +y, -x+y, -x, -x-y: counter-clockwise.
+  std::array<Eigen::Vector2d, 8> corner;
+  corner.fill(points->front());
+  for (const Eigen::Vector2d& point : *points) {
+    const double x = point.x(), y = point.y();
+    if (y < corner[0].y()) corner[0] = point;
+    if (x - y > corner[1].x() - corner[1].y()) corner[1] = point;
+    if (x > corner[2].x()) corner[2] = point;
+    if (x + y > corner[3].x() + corner[3].y()) corner[3] = point;
+    if (y > corner[4].y()) corner[4] = point;
+    if (y - x > corner[5].y() - corner[5].x()) corner[5] = point;
+    if (x < corner[6].x()) corner[6] = point;
+    if (x + y < corner[7].x() + corner[7].y()) corner[7] = point;
+  }
+  // Sides of no length hold nothing back: every point is "not left of" them.
+  std::array<Eigen::Vector2d, 8> side;
+  int num_sides = 0;
+  for (int i = 0; i < 8; ++i) {
+    const Eigen::Vector2d along = corner[(i + 1) % 8] - corner[i];
+    if (along == Eigen::Vector2d::Zero()) continue;
+    corner[num_sides] = corner[i];
+    side[num_sides++] = along;
+  }
+  const auto inside = [&](const Eigen::Vector2d& point) {
+    bool left_of_all = num_sides >= 3;
+    for (int i = 0; i < num_sides; ++i) left_of_all &= Cross(side[i], point - corner[i]) > 0.0;
+    return left_of_all;
+  };
+  points->erase(std::remove_if(points->begin(), points->end(), inside), points->end());
+}
+
+}  // namespace
+
 Polygon ConvexHull(std::vector<Eigen::Vector2d> points) {
+  if (points.size() > kFilterFrom) DropInnerPoints(&points);
   std::sort(points.begin(), points.end(), [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
     return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
   });
@@ -13,7 +56,7 @@ Polygon ConvexHull(std::vector<Eigen::Vector2d> points) {
 
   // Lower chain from left to right, then upper chain back.
   Polygon hull;
-  hull.reserve(64);
+  hull.reserve(32);
   const auto add = [&hull](const Eigen::Vector2d& point, size_t fixed) {
     while (hull.size() >= fixed + 2 &&
            Cross(hull.back() - hull[hull.size() - 2], point - hull.back()) <= 0.0) {

@@ -1,10 +1,11 @@
 #include "geometry/enclosing_parallelogram.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace lightfit {
@@ -13,7 +14,13 @@ namespace {
 
 // Relative gain below which alternating the strips has converged.
 constexpr double kAlternationTolerance = 1e-13;
-constexpr int kMaxAlternations = 50;
+constexpr int kMaxAlternations = 20;
+
+// The second strip is tried at every breakpoint and, between them, at angles no further apart than
+// this. Local minima among these are pursued if they are within this factor of the best.
+constexpr double kMaxStartAngle = 0.35;
+constexpr double kPursuedFactor = 1.2;
+constexpr int kGoldenSteps = 14;
 
 // Edges count as parallel when the sine of their angle is below this: one breakpoint, not two.
 constexpr double kParallelTolerance = 1e-12;
@@ -65,6 +72,12 @@ std::vector<Breakpoint> PolarOfDifference(const std::vector<Eigen::Vector2d>& po
   return polar;
 }
 
+// Two strips and their energy.
+struct StripPair {
+  Row searched, fixed;
+  double energy = std::numeric_limits<double>::infinity();
+};
+
 class StripSearch {
  public:
   explicit StripSearch(std::vector<Breakpoint> polar)
@@ -103,23 +116,125 @@ class StripSearch {
     double ahead = at(i + 1);
     if (ahead < here) {
       do {
-        ++i;
+        i = Wrap(i + 1);
         here = ahead;
         ahead = at(i + 1);
       } while (ahead < here && ++steps < size_);
     } else {
       double behind = at(i - 1);
       while (behind < here && ++steps < size_) {
-        --i;
+        i = Wrap(i - 1);
         here = behind;
         behind = at(i - 1);
       }
     }
-    Row best = AtBreakpoint(Wrap(i));
-    // The minimum may lie inside either polar edge at this vertex.
-    TryEdge(Wrap(i), b, inverse_width_squared, inverse_height_squared, &best, &here);
-    TryEdge(Wrap(i - 1), b, inverse_width_squared, inverse_height_squared, &best, &here);
+    Row best = AtBreakpoint(i);
+    // The minimum may lie inside one of the polar edges at this vertex: that which leads downhill.
+    const Eigen::Vector2d& vertex = polar_[best.index].row;
+    const Eigen::Vector2d after = NextRow(best.index) - vertex;
+    const double s = Cross(vertex, b);
+    const double numerator = b.squaredNorm() * inverse_width_squared +
+                             vertex.squaredNorm() * inverse_height_squared;
+    // The sign of the derivative of Energy along a direction.
+    const auto falls = [&](const Eigen::Vector2d& along) {
+      return s * (inverse_height_squared * vertex.dot(along) * s - numerator * Cross(along, b)) < 0.0;
+    };
+    if (falls(after)) {
+      TryEdge(best.index, b, inverse_width_squared, inverse_height_squared, &best, &here);
+    } else {
+      const int index = Wrap(best.index - 1);
+      const Eigen::Vector2d from = best.index == 0 ? Eigen::Vector2d(-polar_[index].row)
+                                                   : polar_[index].row;
+      if (falls(from - vertex)) {
+        TryEdge(index, b, inverse_width_squared, inverse_height_squared, &best, &here);
+      }
+    }
     *energy = here;
+    return best;
+  }
+
+  // Rows in order along half the boundary: every breakpoint, and rows between.
+  std::vector<Row> Starts() const {
+    std::vector<Row> starts;
+    starts.reserve(size_ + static_cast<int>(M_PI / kMaxStartAngle));
+    for (int i = 0; i < size_; ++i) {
+      starts.push_back(AtBreakpoint(i));
+      const Eigen::Vector2d from = polar_[i].row;
+      const Eigen::Vector2d to = NextRow(i);
+      const double angle = std::atan2(Cross(from, to), from.dot(to));
+      const int num_between = static_cast<int>(angle / kMaxStartAngle);
+      for (int k = 1; k <= num_between; ++k) {
+        const double share = static_cast<double>(k) / (num_between + 1);
+        starts.push_back({from + share * (to - from), i, false});
+      }
+    }
+    return starts;
+  }
+
+  // The least energy with the fixed strip between the neighbours of start `i`: golden section over
+  // the fixed row, then alternation to close in on the exact rows.
+  StripPair Pursue(const std::vector<Row>& starts,
+                   int i,
+                   int hint,
+                   double first,
+                   double second) const {
+    StripPair best;
+    best.fixed = starts[i];
+    best.searched = Best(best.fixed.value, first, second, hint, &best.energy);
+    // Position i + s with s in [-1, 1]; between two starts rows are on a straight polar edge.
+    const int n = static_cast<int>(starts.size());
+    const Eigen::Vector2d before = i == 0 ? Eigen::Vector2d(-starts[n - 1].value)
+                                          : starts[i - 1].value;
+    const Eigen::Vector2d after = i + 1 == n ? Eigen::Vector2d(-starts[0].value)
+                                             : starts[i + 1].value;
+    const auto row_at = [&](double s) -> Row {
+      const Eigen::Vector2d& here = starts[i].value;
+      if (s < 0.0) {
+        const int index = starts[i].at_breakpoint ? Wrap(starts[i].index - 1) : starts[i].index;
+        const Eigen::Vector2d value = here - s * (before - here);
+        // Rows of the last edge before the seam belong to the other half: turn them back.
+        const bool seam = starts[i].at_breakpoint && starts[i].index == 0;
+        return {seam ? Eigen::Vector2d(-value) : value, index, false};
+      }
+      return {here + s * (after - here), starts[i].index, false};
+    };
+    const auto try_at = [&](double s) {
+      StripPair pair;
+      pair.fixed = row_at(s);
+      pair.searched = Best(pair.fixed.value, first, second, best.searched.index, &pair.energy);
+      if (pair.energy < best.energy) best = pair;
+      return pair.energy;
+    };
+    constexpr double kGolden = 0.6180339887498949;
+    double low = -1.0, high = 1.0;
+    double left = high - kGolden * (high - low), right = low + kGolden * (high - low);
+    double left_energy = try_at(left), right_energy = try_at(right);
+    for (int step = 0; step < kGoldenSteps; ++step) {
+      if (left_energy < right_energy) {
+        high = right;
+        right = left;
+        right_energy = left_energy;
+        left = high - kGolden * (high - low);
+        left_energy = try_at(left);
+      } else {
+        low = left;
+        left = right;
+        left_energy = right_energy;
+        right = low + kGolden * (high - low);
+        right_energy = try_at(right);
+      }
+    }
+    for (int step = 0; step < kMaxAlternations; ++step) {
+      double improved = 0.0;
+      const Row fixed = Best(best.searched.value, second, first, best.fixed.index, &improved);
+      if (!(improved < best.energy * (1.0 - kAlternationTolerance))) break;
+      best.fixed = fixed;
+      best.energy = improved;
+      const Row searched = Best(best.fixed.value, first, second, best.searched.index, &improved);
+      if (!(improved < best.energy * (1.0 - kAlternationTolerance))) break;
+      best.searched = searched;
+      best.energy = improved;
+    }
     return best;
   }
 
@@ -141,7 +256,13 @@ class StripSearch {
   }
 
  private:
-  int Wrap(int i) const { return ((i % size_) + size_) % size_; }
+  // Into 0 ... size - 1, from at most one turn around.
+  int Wrap(int i) const { return i < 0 ? i + size_ : i < size_ ? i : i - size_; }
+
+  // The row at the far end of a polar edge; the last edge ends where the other half begins.
+  Eigen::Vector2d NextRow(int index) const {
+    return index + 1 == size_ ? Eigen::Vector2d(-polar_[0].row) : polar_[index + 1].row;
+  }
 
   // On the edge with pair c (a.c = 1) the energy is a'Qa / (a.e)^2 with e normal to b and
   // Q = cc' |b|^2 / width^2 + I / height^2, least at a ~ Q^-1 e.
@@ -152,8 +273,7 @@ class StripSearch {
                Row* best,
                double* energy) const {
     const Breakpoint& from = polar_[index];
-    const bool seam = index + 1 == size_;
-    const Eigen::Vector2d to = seam ? Eigen::Vector2d(-polar_[0].row) : polar_[index + 1].row;
+    const Eigen::Vector2d to = NextRow(index);
     const Eigen::Vector2d& c = from.pair;
     // Q^-1 e up to scale, by Sherman-Morrison.
     const Eigen::Vector2d e = Perpendicular(b);
@@ -203,35 +323,38 @@ EnclosingParallelogram MinEnergyParallelogram(const Polygon& polygon,
 
   const double iw2 = 1.0 / (width * width);
   const double ih2 = 1.0 / (height * height);
-  double best_energy = std::numeric_limits<double>::infinity();
-  Row best_u, best_v;
+  const std::vector<Row> starts = search.Starts();
+  const int num_starts = static_cast<int>(starts.size());
+  std::vector<double> energies(starts.size());
+  std::vector<int> hints(starts.size());
+  StripPair best;
   // `fixed_is_v`: the start fixes the strip of edge_v and searches that of edge_u, or the reverse.
   for (const bool fixed_is_v : {true, false}) {
     if (!fixed_is_v && width == height) break;  // the same by symmetry
     const double first = fixed_is_v ? iw2 : ih2;
     const double second = fixed_is_v ? ih2 : iw2;
     int hint = search.size() / 2;
-    for (int start = 0; start < search.size(); ++start) {
-      Row fixed = search.AtBreakpoint(start);
-      double energy = 0.0;
-      Row found = search.Best(fixed.value, first, second, hint, &energy);
-      hint = found.index;
-      for (int i = 0; i < kMaxAlternations; ++i) {
-        double improved = 0.0;
-        fixed = search.Best(found.value, second, first, fixed.index, &improved);
-        if (!(improved < energy * (1.0 - kAlternationTolerance))) break;
-        energy = improved;
-        found = search.Best(fixed.value, first, second, found.index, &improved);
-        if (!(improved < energy * (1.0 - kAlternationTolerance))) break;
-        energy = improved;
+    for (int i = 0; i < num_starts; ++i) {
+      hint = search.Best(starts[i].value, first, second, hint, &energies[i]).index;
+      hints[i] = hint;
+    }
+    const double limit =
+        kPursuedFactor * std::min(best.energy, *std::min_element(energies.begin(), energies.end()));
+    for (int i = 0; i < num_starts; ++i) {
+      const int before = i == 0 ? num_starts - 1 : i - 1;
+      const int after = i + 1 == num_starts ? 0 : i + 1;
+      if (energies[i] > energies[before] || energies[i] >= energies[after] || energies[i] > limit) {
+        continue;
       }
-      if (energy < best_energy) {
-        best_energy = energy;
-        best_u = fixed_is_v ? found : fixed;
-        best_v = fixed_is_v ? fixed : found;
+      StripPair found = search.Pursue(starts, i, hints[i], first, second);
+      if (found.energy < best.energy) {
+        best = found;
+        if (!fixed_is_v) std::swap(best.searched, best.fixed);
       }
     }
   }
+  const Row& best_u = best.searched;
+  const Row& best_v = best.fixed;
 
   EnclosingParallelogram result;
   result.contacts = {search.Contacts(best_u), search.Contacts(best_v)};
@@ -244,7 +367,7 @@ EnclosingParallelogram MinEnergyParallelogram(const Polygon& polygon,
   result.shape.corner = edges * low;
   result.shape.edge_u = edges.col(0);
   result.shape.edge_v = edges.col(1);
-  result.energy = best_energy;
+  result.energy = best.energy;
   return result;
 }
 

@@ -14,7 +14,10 @@
 // centrally symmetric convex polygon with one vertex per edge direction of K and one edge per
 // antipodal vertex pair c of K. For a fixed second strip the energy of the first is quasi-convex
 // along that boundary, with a closed form on each edge, so the best first strip is found by walking
-// downhill. Alternating the two strips from every vertex of the polar polygon finds the optimum.
+// downhill. What is left is a function of the second strip alone, of one variable. It is sampled
+// around the boundary, at the vertices and between, and its local minima are closed in on by golden
+// section. Alternating the two strips, or trying hull edges only, is not enough: the optimum need
+// not be flush with any edge of K, and alternation sticks where the energy has a crease.
 #pragma once
 
 #include <Eigen/Core>

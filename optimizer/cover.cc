@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -80,150 +81,195 @@ class InsideTest {
   double radius_squared_;
 };
 
-// Rays of one read-back seen along `frame`'s third axis.
+// The corners of a tile's box of pixel centres and affine depths, as screen points (x, y, d, 1).
+std::array<Eigen::Vector4d, 8> Corners(const DepthTile& tile) {
+  std::array<Eigen::Vector4d, 8> corners;
+  int i = 0;
+  for (const double d : {tile.d_min, tile.d_max}) {
+    for (const double y : {tile.y_begin + 0.5, tile.y_end - 0.5}) {
+      for (const double x : {tile.x_begin + 0.5, tile.x_end - 0.5}) {
+        corners[i++] = Eigen::Vector4d(x, y, d, 1.0);
+      }
+    }
+  }
+  return corners;
+}
+
+// The convex hull of the rays of one read-back, seen along the third axis of a frame.
 class HullBuilder {
  public:
   HullBuilder(const Receivers& receivers, const Matrix34d& frame_from_screen)
       : receivers_(receivers), frame_from_screen_(frame_from_screen) {}
 
-  // `corners`: eight to a tile, as screen points (x, y, d, 1).
-  Polygon ExactHull(const std::vector<Eigen::Vector4d>& corners) {
-    std::vector<Eigen::Vector2d> corner_points;
-    corner_points.reserve(corners.size());
-    for (const Eigen::Vector4d& corner : corners) corner_points.push_back(Project(corner));
-
-    // First look into the tiles that carry the hull of all corners: most of the exact hull is there.
-    std::vector<bool> looked_into(receivers_.tiles.size(), false);
-    const Polygon outer = ConvexHull(corner_points);
-    const InsideTest strictly_inside_outer(outer);
-    for (size_t tile = 0; tile < receivers_.tiles.size(); ++tile) {
-      for (int i = 0; i < 8 && !looked_into[tile]; ++i) {
-        looked_into[tile] = std::find(outer.begin(), outer.end(), corner_points[8 * tile + i]) !=
-                            outer.end();
-      }
-      if (looked_into[tile]) AddTile(receivers_.tiles[tile], nullptr);
-    }
-    hull_ = ConvexHull(std::move(points_));
-    // Then into every other tile whose box still reaches out of what is known.
-    constexpr size_t kMaxPending = 4096;
-    std::optional<InsideTest> inside(hull_);
-    points_.clear();
-    for (size_t tile = 0; tile < receivers_.tiles.size(); ++tile) {
-      if (looked_into[tile]) continue;
-      const Eigen::Vector2d* box = &corner_points[8 * tile];
-      if (std::all_of(box, box + 8, *inside)) continue;
-      AddTile(receivers_.tiles[tile], &*inside);
-      if (points_.size() > kMaxPending) {
-        UpdateHull();
-        inside.emplace(hull_);
-      }
-    }
+  Polygon ExactHull() {
+    // One receiver of every middling tile gives a first hull that is not far off.
+    const size_t seeds = receivers_.tile_grids.size() > 1 ? 1 : 0;
+    for (const DepthTile& tile : receivers_.tile_grids[seeds].tiles) AddFirstReceiver(tile);
+    UpdateHull();
+    // Then every tile whose box reaches out of what is known is looked into, coarse to fine.
+    const size_t coarsest = receivers_.tile_grids.size() - 1;
+    for (size_t i = 0; i < receivers_.tile_grids[coarsest].tiles.size(); ++i) Visit(coarsest, i);
     UpdateHull();
     return std::move(hull_);
   }
 
  private:
+  static constexpr size_t kMaxPending = 48;
+
   Eigen::Vector2d Project(const Eigen::Vector4d& screen) const {
     return (frame_from_screen_ * screen).hnormalized();
   }
 
-  void AddTile(const DepthTile& tile, const InsideTest* inside) {
-    receivers_.ForEachReceiver(tile, [&](int x, int y, double d) {
-      const Eigen::Vector2d point = Project({x + 0.5, y + 0.5, d, 1.0});
-      if (inside == nullptr || !(*inside)(point)) points_.push_back(point);
-    });
+  void Visit(size_t level, size_t index) {
+    const TileGrid& grid = receivers_.tile_grids[level];
+    const DepthTile& tile = grid.tiles[index];
+    if (tile.num_receivers == 0) return;
+    const std::array<Eigen::Vector4d, 8> corners = Corners(tile);
+    if (std::all_of(corners.begin(), corners.end(), [this](const Eigen::Vector4d& corner) {
+          return (*inside_)(Project(corner));
+        })) {
+      return;
+    }
+    if (level == 0) {
+      receivers_.ForEachReceiver(tile, [this](int x, int y, double d) {
+        const Eigen::Vector2d point = Project({x + 0.5, y + 0.5, d, 1.0});
+        if (!(*inside_)(point)) pending_.push_back(point);
+      });
+      if (pending_.size() > kMaxPending) UpdateHull();
+      return;
+    }
+    constexpr int kSide = Receivers::kTilesPerSide;
+    const TileGrid& finer = receivers_.tile_grids[level - 1];
+    const int first_row = static_cast<int>(index) / grid.columns * kSide;
+    const int first_column = static_cast<int>(index) % grid.columns * kSide;
+    for (int row = first_row; row < std::min(first_row + kSide, finer.rows); ++row) {
+      for (int column = first_column; column < std::min(first_column + kSide, finer.columns);
+           ++column) {
+        Visit(level - 1, static_cast<size_t>(row) * finer.columns + column);
+      }
+    }
+  }
+
+  void AddFirstReceiver(const DepthTile& tile) {
+    if (tile.num_receivers == 0) return;
+    const AffineDepth affine_depth(receivers_.readback.camera, receivers_.readback.depth_kind);
+    for (int y = tile.y_begin; y < tile.y_end; ++y) {
+      for (int x = tile.x_begin; x < tile.x_end; ++x) {
+        const double depth =
+            receivers_.readback.depth[static_cast<size_t>(y) * receivers_.readback.width() + x];
+        if (!affine_depth.IsSurface(depth)) continue;
+        pending_.push_back(Project({x + 0.5, y + 0.5, affine_depth.At(x, y, depth), 1.0}));
+        return;
+      }
+    }
   }
 
   void UpdateHull() {
-    points_.insert(points_.end(), hull_.begin(), hull_.end());
-    hull_ = ConvexHull(std::move(points_));
-    points_.clear();
+    pending_.insert(pending_.end(), hull_.begin(), hull_.end());
+    hull_ = ConvexHull(std::move(pending_));
+    pending_.clear();
+    inside_.emplace(hull_);
   }
 
   const Receivers& receivers_;
   const Matrix34d frame_from_screen_;
-  std::vector<Eigen::Vector2d> points_;
+  std::vector<Eigen::Vector2d> pending_;  // receivers that may lie outside hull_
   Polygon hull_;
+  std::optional<InsideTest> inside_;  // of hull_
 };
 
-// The corners of the tile's box of pixel centres and affine depths.
-void AppendCorners(const DepthTile& tile, std::vector<Eigen::Vector4d>* corners) {
-  for (const double d : {tile.d_min, tile.d_max}) {
-    for (const double y : {tile.y_begin + 0.5, tile.y_end - 0.5}) {
-      for (const double x : {tile.x_begin + 0.5, tile.x_end - 0.5}) {
-        corners->emplace_back(x, y, d, 1.0);
-      }
-    }
+// Bounds on all receivers at one level of detail: boxes and how many receivers each holds.
+struct ReceiverBoxes {
+  std::vector<Eigen::Vector4d> corners;  // eight to a box, screen points (x, y, d, 1)
+  std::vector<int> num_receivers;
+};
+
+ReceiverBoxes BoxesOf(const TileGrid& grid) {
+  ReceiverBoxes boxes;
+  for (const DepthTile& tile : grid.tiles) {
+    if (tile.num_receivers == 0) continue;
+    const std::array<Eigen::Vector4d, 8> corners = Corners(tile);
+    boxes.corners.insert(boxes.corners.end(), corners.begin(), corners.end());
+    boxes.num_receivers.push_back(tile.num_receivers);
   }
+  return boxes;
 }
 
-// A tile for every receiver: the way out when the boxes are too coarse to tell whether the light is
-// among the receivers.
-Receivers WithTilePerReceiver(const Receivers& receivers) {
-  Receivers fine;
-  fine.readback = receivers.readback;
-  fine.world_from_screen = receivers.world_from_screen;
-  for (const DepthTile& tile : receivers.tiles) {
-    receivers.ForEachReceiver(tile, [&fine](int x, int y, double d) {
-      fine.tiles.push_back({x, y, x + 1, y + 1, d, d, 1});
+// A box for every receiver.
+ReceiverBoxes PixelBoxes(const Receivers& receivers) {
+  ReceiverBoxes boxes;
+  for (const DepthTile& tile : receivers.tile_grids[0].tiles) {
+    if (tile.num_receivers == 0) continue;
+    receivers.ForEachReceiver(tile, [&boxes](int x, int y, double d) {
+      boxes.corners.insert(boxes.corners.end(), 8, Eigen::Vector4d(x + 0.5, y + 0.5, d, 1.0));
+      boxes.num_receivers.push_back(1);
     });
   }
-  return fine;
+  return boxes;
 }
 
-absl::StatusOr<RayCover> CoverTiles(const Receivers& receivers, const Light& light) {
-  const Matrix34d ray_from_screen = RayFromWorld(light) * receivers.world_from_screen;
-  std::vector<Eigen::Vector4d> corners;
-  corners.reserve(8 * receivers.tiles.size());
-  for (const DepthTile& tile : receivers.tiles) AppendCorners(tile, &corners);
-
-  RayCover cover;
-  Eigen::Matrix3d frame_from_ray = Eigen::Matrix3d::Identity();
+// Sets the cover's mean ray and depth, and a frame (a rotation of light space) whose third axis has
+// all boxes in front of it. False when there is none.
+bool AimAtBoxes(const ReceiverBoxes& boxes,
+                const Light& light,
+                const Matrix34d& ray_from_screen,
+                const Eigen::Matrix4d& world_from_screen,
+                RayCover* cover,
+                Eigen::Matrix3d* frame_from_ray) {
+  frame_from_ray->setIdentity();
+  // Depth of a box is extreme at its corners: a linear function of the world point.
+  Eigen::RowVector4d depth_from_screen;
   if (light.kind == Light::Kind::kPoint) {
     std::vector<Eigen::Vector3d> rays;
-    rays.reserve(corners.size());
-    for (const Eigen::Vector4d& corner : corners) rays.push_back(ray_from_screen * corner);
+    rays.reserve(boxes.corners.size());
+    for (const Eigen::Vector4d& corner : boxes.corners) rays.push_back(ray_from_screen * corner);
     const std::optional<Eigen::Vector3d> axis = FeasibleAxis(rays);
-    if (!axis.has_value()) return SurroundedError(light);
-    frame_from_ray = FrameAlong(*axis);
-    cover.mean_ray.setZero();
-    for (size_t tile = 0; tile < receivers.tiles.size(); ++tile) {
-      // The mean of a box's two opposite corners stands for its receivers.
-      const Eigen::Vector3d centre = ray_from_screen * (corners[8 * tile] + corners[8 * tile + 7]);
-      cover.mean_ray += receivers.tiles[tile].num_receivers * centre.normalized();
+    if (!axis.has_value()) return false;
+    *frame_from_ray = FrameAlong(*axis);
+    cover->mean_ray.setZero();
+    for (size_t box = 0; box < boxes.num_receivers.size(); ++box) {
+      // Between two opposite corners lies the middle of the box.
+      const Eigen::Vector3d middle = rays[8 * box].normalized() + rays[8 * box + 7].normalized();
+      cover->mean_ray += boxes.num_receivers[box] * middle.normalized();
     }
-    cover.mean_ray.normalize();
+    cover->mean_ray.normalize();
+    depth_from_screen = frame_from_ray->row(2) * ray_from_screen;
+  } else {
+    cover->mean_ray = Eigen::Vector3d::UnitZ();
+    depth_from_screen = light.direction.normalized().transpose() * world_from_screen.topRows<3>();
   }
-
-  const Matrix34d frame_from_screen = frame_from_ray * ray_from_screen;
-  // Depth of a box is extreme at its corners: a linear function of the world point.
-  const Eigen::RowVector4d depth_from_screen =
-      light.kind == Light::Kind::kPoint
-          ? Eigen::RowVector4d(frame_from_screen.row(2))
-          : Eigen::RowVector4d(light.direction.normalized().transpose() *
-                               receivers.world_from_screen.topRows<3>());
-  const Eigen::RowVector4d scale_from_screen = receivers.world_from_screen.row(3);
-  cover.depth = {std::numeric_limits<double>::infinity(),
-                 -std::numeric_limits<double>::infinity()};
-  for (const Eigen::Vector4d& corner : corners) {
+  const Eigen::RowVector4d scale_from_screen = world_from_screen.row(3);
+  cover->depth = {std::numeric_limits<double>::infinity(),
+                  -std::numeric_limits<double>::infinity()};
+  for (const Eigen::Vector4d& corner : boxes.corners) {
     const double depth = depth_from_screen.dot(corner) / scale_from_screen.dot(corner);
-    cover.depth.near = std::min(cover.depth.near, depth);
-    cover.depth.far = std::max(cover.depth.far, depth);
+    cover->depth.near = std::min(cover->depth.near, depth);
+    cover->depth.far = std::max(cover->depth.far, depth);
   }
-
-  cover.hull = HullBuilder(receivers, frame_from_screen).ExactHull(corners);
-  const std::optional<Eigen::Matrix3d> normalized = NormalizeRays(frame_from_ray, &cover.hull);
-  if (!normalized.has_value()) return FlatError(light);
-  cover.normalized_from_ray = *normalized;
-  return cover;
+  return true;
 }
 
 }  // namespace
 
 absl::StatusOr<RayCover> CoverReceivers(const Receivers& receivers, const Light& light) {
-  absl::StatusOr<RayCover> cover = CoverTiles(receivers, light);
-  if (cover.ok() || light.kind == Light::Kind::kDirectional) return cover;
-  return CoverTiles(WithTilePerReceiver(receivers), light);
+  const Matrix34d ray_from_screen = RayFromWorld(light) * receivers.world_from_screen;
+  RayCover cover;
+  Eigen::Matrix3d frame_from_ray;
+  // Coarse boxes will do unless they reach around the light where their receivers do not.
+  const auto aim_at = [&](const ReceiverBoxes& boxes) {
+    return AimAtBoxes(
+        boxes, light, ray_from_screen, receivers.world_from_screen, &cover, &frame_from_ray);
+  };
+  const size_t num_grids = receivers.tile_grids.size();
+  const bool aimed = (num_grids > 1 && aim_at(BoxesOf(receivers.tile_grids[1]))) ||
+                     aim_at(BoxesOf(receivers.tile_grids[0])) || aim_at(PixelBoxes(receivers));
+  if (!aimed) return SurroundedError(light);
+
+  cover.hull = HullBuilder(receivers, frame_from_ray * ray_from_screen).ExactHull();
+  const std::optional<Eigen::Matrix3d> normalized = NormalizeRays(frame_from_ray, &cover.hull);
+  if (!normalized.has_value()) return FlatError(light);
+  cover.normalized_from_ray = *normalized;
+  return cover;
 }
 
 absl::StatusOr<RayCover> MergeCovers(const RayCover& a, const RayCover& b, const Light& light) {

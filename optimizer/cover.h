@@ -23,8 +23,8 @@ struct RayCover {
   // The receivers' rays as (X'_1, X'_2) / X'_3: their convex hull, the origin strictly inside.
   Polygon hull;
 
-  // Mean of the receivers' unit rays in light space: the axis of a focused shadow map. For a
-  // directional light always (0, 0, 1).
+  // Mean of the receivers' unit rays in light space, each tile's by its middle: the axis of a focused
+  // shadow map. For a directional light always (0, 0, 1).
   Eigen::Vector3d mean_ray = Eigen::Vector3d::UnitZ();
 
   // Bounds over the receivers, world units. Point light: of X'_3, the depth along the third row of
@@ -33,7 +33,8 @@ struct RayCover {
 };
 
 // The hull is that of the rays through the centres of all pixels with a surface, exactly: tiles are
-// bounded by the corners of their depth boxes, and only tiles that reach the hull are looked into.
+// bounded by the corners of their depth boxes, and only those that reach out of the hull found so
+// far are looked into, coarse tiles before fine ones before pixels.
 //
 // FailedPrecondition when receivers surround a point light, or all lie in one plane with the light.
 absl::StatusOr<RayCover> CoverReceivers(const Receivers& receivers, const Light& light);

@@ -68,7 +68,8 @@ absl::Status TooFewSamplesError(const Light& light, const SampleCounts& counts, 
 std::vector<Eigen::Vector3d> ReceiverRays(const Receivers& receivers,
                                           const Eigen::Matrix<double, 3, 4>& ray_from_screen) {
   std::vector<Eigen::Vector3d> rays;
-  for (const DepthTile& tile : receivers.tiles) {
+  for (const DepthTile& tile : receivers.tile_grids[0].tiles) {
+    if (tile.num_receivers == 0) continue;
     receivers.ForEachReceiver(tile, [&](int x, int y, double d) {
       rays.push_back(ray_from_screen * Eigen::Vector4d(x + 0.5, y + 0.5, d, 1.0));
     });

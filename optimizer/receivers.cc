@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "absl/strings/str_format.h"
 #include "optimizer/readback_kernels.h"
@@ -12,10 +13,41 @@ namespace lightfit {
 
 namespace {
 
-// Tiles small enough to bound depth well, large enough that their corners are few against pixels.
-int TileSize(int width, int height) {
-  const int longer = std::max(width, height);
-  return longer <= 256 ? 8 : longer <= 1024 ? 16 : 32;
+// Side of the finest tiles, pixels: small enough to bound depth well, and many pixels to a tile.
+int TileSize(int width, int height) { return std::max(width, height) <= 512 ? 8 : 16; }
+
+// Grids are merged until one has at most this many tiles.
+constexpr size_t kMaxCoarsestTiles = 64;
+
+TileGrid MergeTiles(const TileGrid& fine) {
+  constexpr int kSide = Receivers::kTilesPerSide;
+  TileGrid coarse;
+  coarse.columns = (fine.columns + kSide - 1) / kSide;
+  coarse.rows = (fine.rows + kSide - 1) / kSide;
+  coarse.tiles.reserve(static_cast<size_t>(coarse.columns) * coarse.rows);
+  for (int row = 0; row < fine.rows; row += kSide) {
+    for (int column = 0; column < fine.columns; column += kSide) {
+      const int last_row = std::min(row + kSide, fine.rows) - 1;
+      const int last_column = std::min(column + kSide, fine.columns) - 1;
+      DepthTile merged = fine.tiles[static_cast<size_t>(row) * fine.columns + column];
+      const DepthTile& last = fine.tiles[static_cast<size_t>(last_row) * fine.columns + last_column];
+      merged.x_end = last.x_end;
+      merged.y_end = last.y_end;
+      merged.num_receivers = 0;
+      for (int y = row; y <= last_row; ++y) {
+        for (int x = column; x <= last_column; ++x) {
+          const DepthTile& tile = fine.tiles[static_cast<size_t>(y) * fine.columns + x];
+          if (tile.num_receivers == 0) continue;
+          const bool first = merged.num_receivers == 0;
+          merged.d_min = first ? tile.d_min : std::min(merged.d_min, tile.d_min);
+          merged.d_max = first ? tile.d_max : std::max(merged.d_max, tile.d_max);
+          merged.num_receivers += tile.num_receivers;
+        }
+      }
+      coarse.tiles.push_back(merged);
+    }
+  }
+  return coarse;
 }
 
 internal::DepthIntervals Intervals(const AffineDepth& affine_depth) {
@@ -130,6 +162,10 @@ absl::StatusOr<Receivers> FindReceivers(const Readback& readback,
   const internal::DepthIntervals intervals = Intervals(affine_depth);
   const int tile_size = TileSize(width, height);
   int64_t num_receivers = 0, num_background = 0;
+  TileGrid finest;
+  finest.columns = (width + tile_size - 1) / tile_size;
+  finest.rows = (height + tile_size - 1) / tile_size;
+  finest.tiles.reserve(static_cast<size_t>(finest.columns) * finest.rows);
   for (int y = 0; y < height; y += tile_size) {
     for (int x = 0; x < width; x += tile_size) {
       DepthTile tile = {x, y, std::min(x + tile_size, width), std::min(y + tile_size, height),
@@ -142,11 +178,14 @@ absl::StatusOr<Receivers> FindReceivers(const Readback& readback,
                               intervals);
       num_background += statistics.num_background;
       num_receivers += statistics.num_surface;
-      if (statistics.num_surface == 0) continue;
       tile.num_receivers = statistics.num_surface;
-      SetAffineRange(receivers, affine_depth, statistics, &tile);
-      receivers.tiles.push_back(tile);
+      if (tile.num_receivers > 0) SetAffineRange(receivers, affine_depth, statistics, &tile);
+      finest.tiles.push_back(tile);
     }
+  }
+  receivers.tile_grids.push_back(std::move(finest));
+  while (receivers.tile_grids.back().tiles.size() > kMaxCoarsestTiles) {
+    receivers.tile_grids.push_back(MergeTiles(receivers.tile_grids.back()));
   }
   const int64_t num_pixels = static_cast<int64_t>(width) * height;
   const int64_t num_invalid = num_pixels - num_receivers - num_background;

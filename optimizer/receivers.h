@@ -19,13 +19,20 @@
 
 namespace lightfit {
 
-// A rectangle of pixels, first column and row included, last excluded, and the range of affine depth
-// of its surfaces. As rays are linear in (x, y, d, 1), those of all its surfaces lie in the hull of
+// A rectangle of pixels, begin included, end excluded, and the range of affine depth of its
+// surfaces, if it has any. As rays are linear in (x, y, d, 1), those of all its surfaces lie in the hull of
 // the rays at the eight corners of the box.   math.md 2
 struct DepthTile {
   int x_begin, y_begin, x_end, y_end;
   double d_min, d_max;
   int num_receivers;
+};
+
+// Tiles that cover the image, in row order.
+struct TileGrid {
+  int columns = 0;
+  int rows = 0;
+  std::vector<DepthTile> tiles;
 };
 
 // A pixel at a shadow boundary of some light, where the surface continues to all four neighbours.
@@ -43,9 +50,12 @@ struct Receivers {
   Readback readback;
   SampleOptions options;
   Eigen::Matrix4d world_from_screen;
-  std::vector<DepthTile> tiles;          // those with at least one receiver, in row order
-  std::vector<BoundaryPixel> boundary;   // in pixel order
+  // Finest first; a tile of each further grid is made of kTilesPerSide^2 tiles of the one before.
+  std::vector<TileGrid> tile_grids;
+  std::vector<BoundaryPixel> boundary;  // in pixel order
   std::array<SampleCounts, kMaxLights> counts;  // by shadow bit; used, facing_away, edge_on are 0 yet
+
+  static constexpr int kTilesPerSide = 4;
 
   // Calls visit(x, y, d) at every receiver of the tile, in row order.
   template <typename Visitor>
