@@ -1,0 +1,48 @@
+// io/camera_exr.h
+//
+// The camera from the attributes worldToCamera and worldToNDC of an EXR header.
+// In:   the two matrices as stored, the size of the display window, the renderer's convention.
+// Out:  Camera: camera_from_world from the first, the intrinsics from worldToNDC.
+//
+// Standard: OpenEXR, "Standard Attributes": camera space +x right, +y up, +z forward; NDC is 2D,
+// (0, 0) the upper left and (1, 1) the lower right of the display window. Nothing is guessed:
+// matrices that do not hold together under the stated convention are refused, and the message names
+// the words of io/camera_convention.h under which they would.
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "geometry/camera.h"
+#include "io/camera_convention.h"
+
+namespace lightfit {
+
+struct CameraExrOptions {
+  CameraConvention convention;
+
+  // Clip planes, world units, which the attributes do not tell. Needed for NDC depth only.
+  double near = 0.0;
+  double far = std::numeric_limits<double>::infinity();
+
+  // Width over height of a pixel; 0: the file's pixelAspectRatio, or 1 without one. >= 0.
+  double pixel_aspect = 0.0;
+
+  // Largest distance of the principal point from the middle of the frame, in frame widths and
+  // heights. A wrong NDC range moves it by 0.25 or more; raise this for strong lens shifts. > 0.
+  double max_frame_shift = 0.2;
+};
+
+// `world_to_camera` and `world_to_ndc` hold the 16 numbers as stored: (r, c) is number 4 r + c.
+absl::StatusOr<Camera> CameraFromExrMatrices(const Eigen::Matrix4d& world_to_camera,
+                                             const Eigen::Matrix4d& world_to_ndc,
+                                             int width,
+                                             int height,
+                                             const CameraExrOptions& options = {});
+
+// The camera of the first part of the file that has both attributes.
+absl::StatusOr<Camera> ReadCameraExr(const std::string& path, const CameraExrOptions& options = {});
+
+}  // namespace lightfit

@@ -1,0 +1,22 @@
+// io/proto_json.h
+//
+// Protobuf messages from and to JSON text, with our kind of status.
+#pragma once
+
+#include <google/protobuf/message.h>
+
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+
+namespace lightfit {
+
+// Fields that the message does not have are ignored.
+absl::Status JsonToProto(absl::string_view json, google::protobuf::Message& message);
+
+// camelCase names in schema order, indented, fields of value 0 included; ends with a new line.
+absl::StatusOr<std::string> ProtoToJson(const google::protobuf::Message& message);
+
+}  // namespace lightfit

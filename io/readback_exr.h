@@ -1,0 +1,79 @@
+// io/readback_exr.h
+//
+// Read-backs from OpenEXR files, as renderers write them.
+// In:   an EXR file with a depth channel and shadow channels, the lights, and what the file means.
+// Out:  ReadbackFile: depth, shadow bits and camera, owned; one status per light.
+//
+// Depth is the channel "Z" or "<layer>.Z". Shadows are one channel per light, "shadow.<light>",
+// above 0.5 where that light is blocked, or one UINT channel of bits. In a multi-part file the
+// first part with a depth channel is the read-back; shadow channels may lie in any part of its
+// size.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/types/optional.h"
+#include "absl/types/span.h"
+#include "geometry/camera.h"
+#include "geometry/light.h"
+#include "io/camera_exr.h"
+#include "optimizer/readback.h"
+
+namespace lightfit {
+
+struct ReadbackExrOptions {
+  DepthKind depth_kind = DepthKind::kCameraZ;
+
+  // Empty: "Z", or else the only channel whose last component is Z ("ViewLayer.Depth.Z").
+  std::string depth_channel;
+
+  // The shadow channel of a light; "{light}" stands for the light's name, once.
+  std::string shadow_channel_format = "shadow.{light}";
+
+  // Light name to channel name, for lights that do not follow the format.
+  std::map<std::string, std::string> shadow_channels;
+
+  // Not empty: all shadows are in this one UINT channel, light l in bit Light::shadow_bit.
+  std::string shadow_bits_channel;
+
+  // Set: this camera; its size must be the display window's. Else: the file's attributes, which
+  // `camera_exr` says how to read.
+  absl::optional<Camera> camera;
+  CameraExrOptions camera_exr;
+
+  // Files that declare more pixels than this (display or data window) are refused unread. >= 1.
+  int64_t max_pixels = int64_t{64} << 20;
+};
+
+struct ReadbackFile {
+  Camera camera;
+  DepthKind depth_kind = DepthKind::kCameraZ;
+  std::vector<float> depth;           // row-major, top row first, the display window
+  std::vector<uint32_t> shadow_bits;  // likewise; light l in bit lights[l].shadow_bit
+
+  // Element l belongs to lights[l]: ok, or why its shadow could not be read (NotFound lists the
+  // channels there are). The other lights are good to use.
+  std::vector<absl::Status> light_status;
+
+  // Refers to this object's buffers.
+  Readback View() const;
+};
+
+// Reads one file. Fails as a whole when the file, its depth or its camera cannot be used; a light
+// without a shadow channel fails alone, in light_status. Outside the data window there is
+// background and no shadow; what lies outside the display window is dropped. Each light needs its
+// own shadow_bit; ReadLightsFile() numbers them in order.
+absl::StatusOr<ReadbackFile> ReadReadbackExr(const std::string& path,
+                                             absl::Span<const Light> lights,
+                                             const ReadbackExrOptions& options = {});
+
+// Names of the lights that have a channel of the form `shadow_channel_format`, in file order.
+absl::StatusOr<std::vector<std::string>> ListShadowLights(const std::string& path,
+                                                          const ReadbackExrOptions& options = {});
+
+}  // namespace lightfit
