@@ -115,7 +115,7 @@ absl::StatusOr<Camera> MakeCamera(const Eigen::Matrix4d& camera_from_world,
                                             : std::copysign(1.0, projection(3, 2));
   if (!looks_orthographic &&
       (projection(3, 0) != 0.0 || projection(3, 1) != 0.0 || projection(3, 3) != 0.0 ||
-       projection(3, 2) == 0.0)) {
+       std::abs(std::abs(projection(3, 2)) - 1.0) > 1e-6)) {
     return absl::InvalidArgumentError(
         absl::StrFormat("camera: the projection's last row = (%g, %g, %g, %g), want (0, 0, -1, 0) "
                         "or (0, 0, 1, 0) for perspective, (0, 0, 0, 1) for orthographic; is it "
@@ -233,21 +233,8 @@ AffineDepth::AffineDepth(const Camera& camera, DepthKind kind)
   if (ndc_near > ndc_far) surface_min_ = ndc_far;
 }
 
-double AffineDepth::At(int x, int y, double depth) const {
-  switch (kind_) {
-    case DepthKind::kCameraZ:
-      return orthographic_ ? depth : 1.0 / depth;
-    case DepthKind::kDistance: {
-      if (orthographic_) return depth;
-      const Eigen::Vector3d ray = camera_from_screen_ * Eigen::Vector3d(x + 0.5, y + 0.5, 1.0);
-      return ray.norm() / depth;
-    }
-    case DepthKind::kNdcZeroToOne:
-    case DepthKind::kNdcMinusOneToOne:
-    case DepthKind::kNdcReversedZeroToOne:
-      return (depth - offset_) * scale_;
-  }
-  return 0.0;
+double AffineDepth::RayLength(int x, int y) const {
+  return (camera_from_screen_ * Eigen::Vector3d(x + 0.5, y + 0.5, 1.0)).norm();
 }
 
 }  // namespace lightfit

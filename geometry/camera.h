@@ -108,6 +108,9 @@ class AffineDepth {
   bool is_pixel_independent() const { return kind_ != DepthKind::kDistance; }
 
  private:
+  // Length of the ray through a pixel's centre to the plane at unit depth.
+  double RayLength(int x, int y) const;
+
   DepthKind kind_;
   bool orthographic_;
   double surface_min_, surface_max_;
@@ -115,6 +118,20 @@ class AffineDepth {
   double scale_, offset_;  // NDC: d = (depth - offset) * scale
   Eigen::Matrix3d camera_from_screen_;
 };
+
+inline double AffineDepth::At(int x, int y, double depth) const {
+  switch (kind_) {
+    case DepthKind::kCameraZ:
+      return orthographic_ ? depth : 1.0 / depth;
+    case DepthKind::kDistance:
+      return orthographic_ ? depth : RayLength(x, y) / depth;
+    case DepthKind::kNdcZeroToOne:
+    case DepthKind::kNdcMinusOneToOne:
+    case DepthKind::kNdcReversedZeroToOne:
+      return (depth - offset_) * scale_;
+  }
+  return 0.0;
+}
 
 // Renderers write "nothing hit" as 1e10 (Cycles), infinity, or the largest float. World units.
 inline constexpr double kBackgroundDepth = 1e9;

@@ -12,17 +12,18 @@ namespace lightfit {
 
 namespace {
 
-// Relative gain below which alternating the strips has converged.
-constexpr double kAlternationTolerance = 1e-13;
-constexpr int kMaxAlternations = 20;
-
 // The second strip is tried at every breakpoint and, between them, at angles no further apart than
 // this. Local minima among these are pursued if they are within this factor of the best.
 constexpr double kMaxStartAngle = 0.35;
 constexpr double kPursuedFactor = 1.2;
-constexpr int kGoldenSteps = 14;
 
-// Edges count as parallel when the sine of their angle is below this: one breakpoint, not two.
+// A local minimum is found to this share of the way to the next start, or to this slope per such
+// step, relative to the energy.
+constexpr double kShareTolerance = 1e-6;
+constexpr double kSlopeTolerance = 1e-7;
+constexpr int kMaxRounds = 30;
+
+// Edges count as parallel when the sine of their angle is below this.
 constexpr double kParallelTolerance = 1e-12;
 
 // One vertex of the polar polygon (a breakpoint: the strip lies along an edge of the polygon) and
@@ -46,29 +47,37 @@ std::vector<Breakpoint> PolarOfDifference(const std::vector<Eigen::Vector2d>& po
   const auto next = [n](int i) { return i + 1 == n ? 0 : i + 1; };
   const auto edge = [&](int i) -> Eigen::Vector2d { return points[next(i)] - points[i]; };
 
-  // Calipers: `low` starts an edge whose opposite vertex is `high`; advance whichever turns first.
-  int low = 0, high = 1;
-  while (Cross(edge(low), edge(high)) > 0.0) high = next(high);
+  // Calipers: `low` starts an edge whose opposite vertex is `high`, the first of those furthest
+  // away. Not found by comparing edge directions: neighbouring edges may be collinear to rounding.
+  const auto distance = [&](int i) { return Cross(edge(0), points[i] - points[0]); };
+  double furthest = 0.0;
+  for (int i = 2; i < n; ++i) furthest = std::max(furthest, distance(i));
+  int low = 0, high = 2;
+  while (distance(high) < furthest * (1.0 - kParallelTolerance)) ++high;
+
   std::vector<Breakpoint> polar;
   polar.reserve(n);
+  const auto parallel = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    return std::abs(Cross(a, b)) <= kParallelTolerance * a.norm() * b.norm();
+  };
   // Together `low` and `high` pass n edges while the strip turns by half a turn.
-  for (int passed = 0; passed < n;) {
-    // The strip turns counter-clockwise; it next lies along the edge at `low`, that at `high`, or
-    // both at once.
+  for (int passed = 0; passed < n; ++passed) {
+    // The strip turns counter-clockwise; it next lies along the edge at `low` or that at `high`.
     const Eigen::Vector2d edge_low = edge(low);
     const Eigen::Vector2d edge_high = -edge(high);
-    const double turn = Cross(edge_low, edge_high);
-    const bool parallel =
-        std::abs(turn) <= kParallelTolerance * edge_low.norm() * edge_high.norm();
-    const bool pass_low = parallel || turn > 0.0;
-    const bool pass_high = (parallel || turn < 0.0) && passed + 2 <= n + (pass_low ? 0 : 1);
+    const bool pass_low = Cross(edge_low, edge_high) >= 0.0;
     const Eigen::Vector2d normal = Perpendicular(pass_low ? edge_low : edge_high);
     const double width = normal.dot(points[high] - points[low]);
-    if (pass_low) low = next(low);
-    if (pass_high) high = next(high);
-    passed += static_cast<int>(pass_low) + static_cast<int>(pass_high);
-    polar.push_back({normal / width, points[high] - points[low], low, high});
+    (pass_low ? low : high) = next(pass_low ? low : high);
+    // Edges in one direction share a breakpoint, or rounding would make false valleys of them.
+    if (polar.empty() || !parallel(polar.back().row, normal)) {
+      polar.push_back({normal / width, {}, low, high});
+    }
+    polar.back().low = low;
+    polar.back().high = high;
+    polar.back().pair = points[high] - points[low];
   }
+  if (polar.size() > 2 && parallel(polar.back().row, polar.front().row)) polar.pop_back();
   return polar;
 }
 
@@ -86,7 +95,7 @@ class StripSearch {
   int size() const { return size_; }
   Row AtBreakpoint(int index) const { return {polar_[index].row, index, true}; }
 
-  // Energy of two rows: (1/|b|^2 ...) in terms of rows a, b: with s = a x b,
+  // Energy in terms of two rows a, b: with s = a x b,
   //   E = ( |b|^2 / width^2 + |a|^2 / height^2 ) / s^2,   as |e_u| = |b| / s and |e_v| = |a| / s.
   static double Energy(const Eigen::Vector2d& a,
                        const Eigen::Vector2d& b,
@@ -171,69 +180,51 @@ class StripSearch {
     return starts;
   }
 
-  // The least energy with the fixed strip between the neighbours of start `i`: golden section over
-  // the fixed row, then alternation to close in on the exact rows.
-  StripPair Pursue(const std::vector<Row>& starts,
-                   int i,
-                   int hint,
-                   double first,
-                   double second) const {
-    StripPair best;
-    best.fixed = starts[i];
-    best.searched = Best(best.fixed.value, first, second, hint, &best.energy);
-    // Position i + s with s in [-1, 1]; between two starts rows are on a straight polar edge.
+  // Closes in on the local minimum next to start `i`, whose neighbours have more energy. By the
+  // envelope theorem the slope over the fixed row is that with the searched row held; its zero is
+  // found by the Illinois method (regula falsi that halves the weight of a stale end).
+  StripPair Pursue(const std::vector<Row>& starts, int i, int hint, double first, double second) const {
+    StripPair best = At(starts[i], hint, first, second);
     const int n = static_cast<int>(starts.size());
-    const Eigen::Vector2d before = i == 0 ? Eigen::Vector2d(-starts[n - 1].value)
-                                          : starts[i - 1].value;
-    const Eigen::Vector2d after = i + 1 == n ? Eigen::Vector2d(-starts[0].value)
-                                             : starts[i + 1].value;
-    const auto row_at = [&](double s) -> Row {
-      const Eigen::Vector2d& here = starts[i].value;
-      if (s < 0.0) {
-        const int index = starts[i].at_breakpoint ? Wrap(starts[i].index - 1) : starts[i].index;
-        const Eigen::Vector2d value = here - s * (before - here);
-        // Rows of the last edge before the seam belong to the other half: turn them back.
-        const bool seam = starts[i].at_breakpoint && starts[i].index == 0;
-        return {seam ? Eigen::Vector2d(-value) : value, index, false};
+    // Between neighbouring starts rows lie on a straight polar edge. Across the seam of the half
+    // boundary they change sign.
+    for (const bool ahead : {true, false}) {
+      const bool seam = ahead ? i + 1 == n : i == 0;
+      const Row& neighbour = starts[ahead ? (seam ? 0 : i + 1) : (seam ? n - 1 : i - 1)];
+      const Eigen::Vector2d step =
+          (seam ? Eigen::Vector2d(-neighbour.value) : neighbour.value) - starts[i].value;
+      const double slope = Slope(best, step, first, second);
+      if (slope >= 0.0) continue;
+      // The polar edge is named after the breakpoint where it begins, on this half of the boundary.
+      const int index = ahead ? starts[i].index : neighbour.index;
+      const double sign = !ahead && seam ? -1.0 : 1.0;
+      const auto at = [&](double share) {
+        return At({sign * (starts[i].value + share * step), index, false},
+                  best.searched.index, first, second);
+      };
+      StripPair far = At(neighbour, best.searched.index, first, second);
+      double low = 0.0, low_slope = slope;
+      double high = 1.0, high_slope = Slope(far, seam ? Eigen::Vector2d(-step) : step, first, second);
+      for (int round = 0; round < kMaxRounds && high - low > kShareTolerance; ++round) {
+        // Without a change of sign (or near a crease) bisect.
+        const double share = high_slope > 0.0
+                                 ? low - low_slope * (high - low) / (high_slope - low_slope)
+                                 : 0.5 * (low + high);
+        const StripPair pair = at(share);
+        if (pair.energy < best.energy) best = pair;
+        const double share_slope = Slope(pair, sign * step, first, second);
+        if (std::abs(share_slope) <= kSlopeTolerance * pair.energy) break;
+        if (share_slope < 0.0) {
+          low = share;
+          low_slope = share_slope;
+          high_slope *= 0.5;
+        } else {
+          high = share;
+          high_slope = share_slope;
+          low_slope *= 0.5;
+        }
       }
-      return {here + s * (after - here), starts[i].index, false};
-    };
-    const auto try_at = [&](double s) {
-      StripPair pair;
-      pair.fixed = row_at(s);
-      pair.searched = Best(pair.fixed.value, first, second, best.searched.index, &pair.energy);
-      if (pair.energy < best.energy) best = pair;
-      return pair.energy;
-    };
-    constexpr double kGolden = 0.6180339887498949;
-    double low = -1.0, high = 1.0;
-    double left = high - kGolden * (high - low), right = low + kGolden * (high - low);
-    double left_energy = try_at(left), right_energy = try_at(right);
-    for (int step = 0; step < kGoldenSteps; ++step) {
-      if (left_energy < right_energy) {
-        high = right;
-        right = left;
-        right_energy = left_energy;
-        left = high - kGolden * (high - low);
-        left_energy = try_at(left);
-      } else {
-        low = left;
-        left = right;
-        left_energy = right_energy;
-        right = low + kGolden * (high - low);
-        right_energy = try_at(right);
-      }
-    }
-    for (int step = 0; step < kMaxAlternations; ++step) {
-      double improved = 0.0;
-      const Row fixed = Best(best.searched.value, second, first, best.fixed.index, &improved);
-      if (!(improved < best.energy * (1.0 - kAlternationTolerance))) break;
-      best.fixed = fixed;
-      best.energy = improved;
-      const Row searched = Best(best.fixed.value, first, second, best.searched.index, &improved);
-      if (!(improved < best.energy * (1.0 - kAlternationTolerance))) break;
-      best.searched = searched;
-      best.energy = improved;
+      break;
     }
     return best;
   }
@@ -256,6 +247,25 @@ class StripSearch {
   }
 
  private:
+  StripPair At(const Row& fixed, int hint, double first, double second) const {
+    StripPair pair;
+    pair.fixed = fixed;
+    pair.searched = Best(fixed.value, first, second, hint, &pair.energy);
+    return pair;
+  }
+
+  // The derivative of the energy as the fixed row moves by `step`, the searched one held.
+  static double Slope(const StripPair& pair,
+                      const Eigen::Vector2d& step,
+                      double first,
+                      double second) {
+    const Eigen::Vector2d& a = pair.searched.value;
+    const Eigen::Vector2d& b = pair.fixed.value;
+    const double s = Cross(a, b);
+    const double numerator = first * b.squaredNorm() + second * a.squaredNorm();
+    return 2.0 * (first * b.dot(step) * s - numerator * Cross(a, step)) / (s * s * s);
+  }
+
   // Into 0 ... size - 1, from at most one turn around.
   int Wrap(int i) const { return i < 0 ? i + size_ : i < size_ ? i : i - size_; }
 

@@ -26,7 +26,7 @@ Eigen::Matrix4d MapFromWorld(const Eigen::Matrix3d& map_from_ray,
     map_from_world(2, 3) -= a * range.near;
   } else {
     const double a = w_min / (range.far - range.near);
-    map_from_world.row(2) << a * light.direction.normalized().transpose(), -a * range.near;
+    map_from_world.row(2) << a * light.direction.stableNormalized().transpose(), -a * range.near;
   }
   return map_from_world;
 }

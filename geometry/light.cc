@@ -36,7 +36,7 @@ Light Light::Directional(std::string name, const Eigen::Vector3d& direction, int
 Eigen::Vector4d Light::HomogeneousPosition() const {
   if (kind == Kind::kPoint) return position.homogeneous();
   Eigen::Vector4d at_infinity;
-  at_infinity << -direction.normalized(), 0.0;
+  at_infinity << -direction.stableNormalized(), 0.0;
   return at_infinity;
 }
 
@@ -69,7 +69,7 @@ absl::Status ValidateLight(const Light& light) {
 }
 
 Eigen::Matrix3d FrameAlong(const Eigen::Vector3d& third) {
-  const Eigen::Vector3d z = third.normalized();
+  const Eigen::Vector3d z = third.stableNormalized();
   // Cross with the coordinate axis furthest from z, so that the product is well conditioned.
   Eigen::Index least = 0;
   z.cwiseAbs().minCoeff(&least);

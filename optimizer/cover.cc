@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -36,49 +37,62 @@ absl::Status FlatError(const Light& light) {
       light.name));
 }
 
-// Tells quickly whether a point lies inside a convex polygon: first by the largest circle around
-// the polygon's centroid, then by binary search among the triangles that fan out from it.
+// Tells quickly that a point lies inside a convex polygon. The polygon is cut into columns, each
+// with the range of y that is inside over its whole width; points near the edge are not recognised.
 class InsideTest {
  public:
-  explicit InsideTest(const Polygon& polygon) : polygon_(polygon), centre_(Centroid(polygon)) {
-    radius_squared_ = polygon.size() < 3 ? -1.0 : std::numeric_limits<double>::infinity();
-    for (size_t i = 0; i < polygon.size() && polygon.size() >= 3; ++i) {
-      const Eigen::Vector2d edge = polygon[(i + 1) % polygon.size()] - polygon[i];
-      const double distance = Cross(edge, centre_ - polygon[i]) / edge.norm();
-      radius_squared_ = std::min(radius_squared_, distance * distance);
+  explicit InsideTest(const Polygon& polygon) {
+    y_low_.fill(std::numeric_limits<double>::infinity());
+    y_high_.fill(-std::numeric_limits<double>::infinity());
+    if (polygon.size() < 3) return;
+    double x_max = polygon[0].x();
+    x_min_ = x_max;
+    for (const Eigen::Vector2d& vertex : polygon) {
+      x_min_ = std::min(x_min_, vertex.x());
+      x_max = std::max(x_max, vertex.x());
+    }
+    if (!(x_max > x_min_)) return;
+    columns_per_x_ = kColumns / (x_max - x_min_);
+
+    // Where each border between columns crosses the lower and the upper chain. As the chains are
+    // convex and concave, the borders' values bound the columns between them.
+    std::array<double, kColumns + 1> lower, upper;
+    lower.fill(std::numeric_limits<double>::infinity());
+    upper.fill(-std::numeric_limits<double>::infinity());
+    for (size_t i = 0; i < polygon.size(); ++i) {
+      const Eigen::Vector2d& from = polygon[i];
+      const Eigen::Vector2d& to = polygon[i + 1 == polygon.size() ? 0 : i + 1];
+      const bool is_lower = to.x() > from.x();
+      const Eigen::Vector2d& left = is_lower ? from : to;
+      const Eigen::Vector2d& right = is_lower ? to : from;
+      if (!(right.x() > left.x())) continue;
+      const double slope = (right.y() - left.y()) / (right.x() - left.x());
+      const int first = static_cast<int>(std::ceil((left.x() - x_min_) * columns_per_x_));
+      const int last = static_cast<int>((right.x() - x_min_) * columns_per_x_);
+      for (int border = std::max(first, 0); border <= std::min(last, kColumns); ++border) {
+        const double y = left.y() + slope * (x_min_ + border / columns_per_x_ - left.x());
+        (is_lower ? lower : upper)[border] = y;
+      }
+    }
+    for (int column = 0; column < kColumns; ++column) {
+      y_low_[column] = std::max(lower[column], lower[column + 1]);
+      y_high_[column] = std::min(upper[column], upper[column + 1]);
     }
   }
 
   bool operator()(const Eigen::Vector2d& point) const {
-    const Eigen::Vector2d offset = point - centre_;
-    if (offset.squaredNorm() <= radius_squared_) return true;
-    if (radius_squared_ < 0.0) return false;
-    // The fan's edges are sorted by angle from the first one; find the triangle around the point.
-    const Eigen::Vector2d first = polygon_[0] - centre_;
-    const bool left_half = IsLeft(first, offset);
-    size_t low = 0, high = polygon_.size();
-    while (high - low > 1) {
-      const size_t middle = (low + high) / 2;
-      const Eigen::Vector2d spoke = polygon_[middle] - centre_;
-      const bool spoke_left = IsLeft(first, spoke);
-      const bool after = left_half == spoke_left ? Cross(spoke, offset) >= 0.0 : spoke_left;
-      (after ? low : high) = middle;
-    }
-    const Eigen::Vector2d& from = polygon_[low];
-    const Eigen::Vector2d& to = polygon_[low + 1 == polygon_.size() ? 0 : low + 1];
-    return Cross(to - from, point - from) >= 0.0;
+    const double column = (point.x() - x_min_) * columns_per_x_;
+    if (!(column >= 0.0 && column < kColumns)) return false;
+    const int index = static_cast<int>(column);
+    return point.y() > y_low_[index] && point.y() < y_high_[index];
   }
 
  private:
-  // Angle of `v` from `first` in [0, pi).
-  static bool IsLeft(const Eigen::Vector2d& first, const Eigen::Vector2d& v) {
-    const double cross = Cross(first, v);
-    return cross > 0.0 || (cross == 0.0 && first.dot(v) > 0.0);
-  }
+  static constexpr int kColumns = 64;
 
-  const Polygon& polygon_;
-  Eigen::Vector2d centre_;
-  double radius_squared_;
+  double x_min_ = 0.0;
+  double columns_per_x_ = 0.0;
+  std::array<double, kColumns> y_low_, y_high_;
 };
 
 // The corners of a tile's box of pixel centres and affine depths, as screen points (x, y, d, 1).
@@ -120,6 +134,7 @@ class HullBuilder {
     return (frame_from_screen_ * screen).hnormalized();
   }
 
+  // Looks into a tile unless its box is inside the hull. Also where InsideTest does not recognise it.
   void Visit(size_t level, size_t index) {
     const TileGrid& grid = receivers_.tile_grids[level];
     const DepthTile& tile = grid.tiles[index];
@@ -152,7 +167,7 @@ class HullBuilder {
 
   void AddFirstReceiver(const DepthTile& tile) {
     if (tile.num_receivers == 0) return;
-    const AffineDepth affine_depth(receivers_.readback.camera, receivers_.readback.depth_kind);
+    const AffineDepth& affine_depth = receivers_.affine_depth;
     for (int y = tile.y_begin; y < tile.y_end; ++y) {
       for (int x = tile.x_begin; x < tile.x_end; ++x) {
         const double depth =
@@ -178,92 +193,90 @@ class HullBuilder {
   std::optional<InsideTest> inside_;  // of hull_
 };
 
-// Bounds on all receivers at one level of detail: boxes and how many receivers each holds.
-struct ReceiverBoxes {
-  std::vector<Eigen::Vector4d> corners;  // eight to a box, screen points (x, y, d, 1)
-  std::vector<int> num_receivers;
-};
-
-ReceiverBoxes BoxesOf(const TileGrid& grid) {
-  ReceiverBoxes boxes;
-  for (const DepthTile& tile : grid.tiles) {
-    if (tile.num_receivers == 0) continue;
-    const std::array<Eigen::Vector4d, 8> corners = Corners(tile);
-    boxes.corners.insert(boxes.corners.end(), corners.begin(), corners.end());
-    boxes.num_receivers.push_back(tile.num_receivers);
-  }
-  return boxes;
-}
-
-// A box for every receiver.
-ReceiverBoxes PixelBoxes(const Receivers& receivers) {
-  ReceiverBoxes boxes;
+// A box for every receiver: the way out where tiles reach around the light and receivers do not.
+TileGrid PixelGrid(const Receivers& receivers) {
+  TileGrid pixels;
   for (const DepthTile& tile : receivers.tile_grids[0].tiles) {
     if (tile.num_receivers == 0) continue;
-    receivers.ForEachReceiver(tile, [&boxes](int x, int y, double d) {
-      boxes.corners.insert(boxes.corners.end(), 8, Eigen::Vector4d(x + 0.5, y + 0.5, d, 1.0));
-      boxes.num_receivers.push_back(1);
+    receivers.ForEachReceiver(tile, [&pixels](int x, int y, double d) {
+      pixels.tiles.push_back({x, y, x + 1, y + 1, d, d, 1});
     });
   }
-  return boxes;
+  return pixels;
 }
 
-// Sets the cover's mean ray and depth, and a frame (a rotation of light space) whose third axis has
-// all boxes in front of it. False when there is none.
-bool AimAtBoxes(const ReceiverBoxes& boxes,
-                const Light& light,
-                const Matrix34d& ray_from_screen,
-                const Eigen::Matrix4d& world_from_screen,
-                RayCover* cover,
-                Eigen::Matrix3d* frame_from_ray) {
-  frame_from_ray->setIdentity();
-  // Depth of a box is extreme at its corners: a linear function of the world point.
-  Eigen::RowVector4d depth_from_screen;
-  if (light.kind == Light::Kind::kPoint) {
-    std::vector<Eigen::Vector3d> rays;
-    rays.reserve(boxes.corners.size());
-    for (const Eigen::Vector4d& corner : boxes.corners) rays.push_back(ray_from_screen * corner);
-    const std::optional<Eigen::Vector3d> axis = FeasibleAxis(rays);
-    if (!axis.has_value()) return false;
-    *frame_from_ray = FrameAlong(*axis);
-    cover->mean_ray.setZero();
-    for (size_t box = 0; box < boxes.num_receivers.size(); ++box) {
-      // Between two opposite corners lies the middle of the box.
-      const Eigen::Vector3d middle = rays[8 * box].normalized() + rays[8 * box + 7].normalized();
-      cover->mean_ray += boxes.num_receivers[box] * middle.normalized();
+// An axis that has all boxes of the grid in front of it.
+std::optional<Eigen::Vector3d> AxisOfBoxes(const TileGrid& grid, const Matrix34d& ray_from_screen) {
+  std::vector<Eigen::Vector3d> rays;
+  rays.reserve(8 * grid.tiles.size());
+  for (const DepthTile& tile : grid.tiles) {
+    if (tile.num_receivers == 0) continue;
+    for (const Eigen::Vector4d& corner : Corners(tile)) rays.push_back(ray_from_screen * corner);
+  }
+  return FeasibleAxis(rays);
+}
+
+Eigen::Vector3d MeanRay(const TileGrid& grid, const Matrix34d& ray_from_screen) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const DepthTile& tile : grid.tiles) {
+    if (tile.num_receivers == 0) continue;
+    const Eigen::Vector4d middle(0.5 * (tile.x_begin + tile.x_end),
+                                 0.5 * (tile.y_begin + tile.y_end),
+                                 0.5 * (tile.d_min + tile.d_max),
+                                 1.0);
+    sum += tile.num_receivers * (ray_from_screen * middle).normalized();
+  }
+  return sum.normalized();
+}
+
+// The range over all boxes of a linear function of the world point, which is extreme at corners.
+DepthRange RangeOverBoxes(const TileGrid& grid,
+                          const Eigen::RowVector4d& depth_from_screen,
+                          const Eigen::RowVector4d& scale_from_screen) {
+  DepthRange range = {std::numeric_limits<double>::infinity(),
+                      -std::numeric_limits<double>::infinity()};
+  for (const DepthTile& tile : grid.tiles) {
+    if (tile.num_receivers == 0) continue;
+    for (const Eigen::Vector4d& corner : Corners(tile)) {
+      const double depth = depth_from_screen.dot(corner) / scale_from_screen.dot(corner);
+      range = {std::min(range.near, depth), std::max(range.far, depth)};
     }
-    cover->mean_ray.normalize();
-    depth_from_screen = frame_from_ray->row(2) * ray_from_screen;
-  } else {
-    cover->mean_ray = Eigen::Vector3d::UnitZ();
-    depth_from_screen = light.direction.normalized().transpose() * world_from_screen.topRows<3>();
   }
-  const Eigen::RowVector4d scale_from_screen = world_from_screen.row(3);
-  cover->depth = {std::numeric_limits<double>::infinity(),
-                  -std::numeric_limits<double>::infinity()};
-  for (const Eigen::Vector4d& corner : boxes.corners) {
-    const double depth = depth_from_screen.dot(corner) / scale_from_screen.dot(corner);
-    cover->depth.near = std::min(cover->depth.near, depth);
-    cover->depth.far = std::max(cover->depth.far, depth);
-  }
-  return true;
+  return range;
 }
 
 }  // namespace
 
 absl::StatusOr<RayCover> CoverReceivers(const Receivers& receivers, const Light& light) {
   const Matrix34d ray_from_screen = RayFromWorld(light) * receivers.world_from_screen;
+  const Eigen::RowVector4d scale_from_screen = receivers.world_from_screen.row(3);
+  const TileGrid* boxes = &receivers.tile_grids[0];
   RayCover cover;
-  Eigen::Matrix3d frame_from_ray;
-  // Coarse boxes will do unless they reach around the light where their receivers do not.
-  const auto aim_at = [&](const ReceiverBoxes& boxes) {
-    return AimAtBoxes(
-        boxes, light, ray_from_screen, receivers.world_from_screen, &cover, &frame_from_ray);
-  };
-  const size_t num_grids = receivers.tile_grids.size();
-  const bool aimed = (num_grids > 1 && aim_at(BoxesOf(receivers.tile_grids[1]))) ||
-                     aim_at(BoxesOf(receivers.tile_grids[0])) || aim_at(PixelBoxes(receivers));
-  if (!aimed) return SurroundedError(light);
+  Eigen::Matrix3d frame_from_ray = Eigen::Matrix3d::Identity();
+  TileGrid pixels;
+  if (light.kind == Light::Kind::kPoint) {
+    // Few, coarse boxes will do unless they reach around the light where finer ones do not.
+    std::optional<Eigen::Vector3d> axis;
+    for (size_t level = std::min<size_t>(1, receivers.tile_grids.size() - 1) + 1; level-- > 0;) {
+      axis = AxisOfBoxes(receivers.tile_grids[level], ray_from_screen);
+      if (axis.has_value()) break;
+    }
+    if (!axis.has_value()) {
+      pixels = PixelGrid(receivers);
+      boxes = &pixels;
+      axis = AxisOfBoxes(pixels, ray_from_screen);
+    }
+    if (!axis.has_value()) return SurroundedError(light);
+    frame_from_ray = FrameAlong(*axis);
+    cover.mean_ray = MeanRay(*boxes, ray_from_screen);
+    cover.depth =
+        RangeOverBoxes(*boxes, frame_from_ray.row(2) * ray_from_screen, scale_from_screen);
+  } else {
+    cover.depth = RangeOverBoxes(*boxes,
+                                 light.direction.stableNormalized().transpose() *
+                                     receivers.world_from_screen.topRows<3>(),
+                                 scale_from_screen);
+  }
 
   cover.hull = HullBuilder(receivers, frame_from_ray * ray_from_screen).ExactHull();
   const std::optional<Eigen::Matrix3d> normalized = NormalizeRays(frame_from_ray, &cover.hull);

@@ -1,5 +1,6 @@
 #include "optimizer/footprint_image.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
 

@@ -152,13 +152,8 @@ absl::StatusOr<Receivers> FindReceivers(const Readback& readback,
   if (absl::Status status = ValidateReadback(readback); !status.ok()) return status;
   const int width = readback.width();
   const int height = readback.height();
-  const AffineDepth affine_depth(readback.camera, readback.depth_kind);
-
-  Receivers receivers;
-  receivers.readback = readback;
-  receivers.options = options;
-  receivers.world_from_screen = readback.camera.WorldFromScreen();
-
+  Receivers receivers(readback, options);
+  const AffineDepth& affine_depth = receivers.affine_depth;
   const internal::DepthIntervals intervals = Intervals(affine_depth);
   const int tile_size = TileSize(width, height);
   int64_t num_receivers = 0, num_background = 0;

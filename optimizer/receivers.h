@@ -47,8 +47,15 @@ struct BoundaryPixel {
 };
 
 struct Receivers {
+  Receivers(const Readback& readback, const SampleOptions& options)
+      : readback(readback),
+        options(options),
+        affine_depth(readback.camera, readback.depth_kind),
+        world_from_screen(readback.camera.WorldFromScreen()) {}
+
   Readback readback;
   SampleOptions options;
+  AffineDepth affine_depth;  // of the read-back's camera and depth kind
   Eigen::Matrix4d world_from_screen;
   // Finest first; a tile of each further grid is made of kTilesPerSide^2 tiles of the one before.
   std::vector<TileGrid> tile_grids;
@@ -93,7 +100,6 @@ Eigen::Vector3d SurfaceNormal(const Eigen::Matrix4d& screen_from_world,
 
 template <typename Visitor>
 void Receivers::ForEachReceiver(const DepthTile& tile, const Visitor& visit) const {
-  const AffineDepth affine_depth(readback.camera, readback.depth_kind);
   for (int y = tile.y_begin; y < tile.y_end; ++y) {
     for (int x = tile.x_begin; x < tile.x_end; ++x) {
       const double depth = readback.depth[static_cast<size_t>(y) * readback.width() + x];

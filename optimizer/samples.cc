@@ -53,9 +53,8 @@ Samples SelectSamples(const Receivers& receivers,
                       const Light& light,
                       const Eigen::Matrix3d& normalized_from_ray,
                       bool with_edge_normals) {
-  const AffineDepth affine_depth(receivers.readback.camera, receivers.readback.depth_kind);
   const uint32_t bit = uint32_t{1} << light.shadow_bit;
-  const Eigen::Vector3d towards_sun = -light.direction.normalized();
+  const Eigen::Vector3d towards_sun = -light.direction.stableNormalized();
 
   Samples samples;
   samples.ray_from_screen =
@@ -86,7 +85,7 @@ Samples SelectSamples(const Receivers& receivers,
     samples.d_y.push_back(pixel.d_y);
     if (with_edge_normals) {
       const Eigen::Vector2d normal = ShadowEdgeNormal(receivers.readback,
-                                                      affine_depth,
+                                                      receivers.affine_depth,
                                                       light.shadow_bit,
                                                       receivers.options.edge_window,
                                                       pixel.x,

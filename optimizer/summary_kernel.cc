@@ -171,11 +171,13 @@ Eigen::Matrix<double, 6, 6> AccumulateTensor(const Samples& samples, const Metri
      sums);
   }
 
+  // Where no edge is known, every sample counts whole.
+  const double scale = edges ? 1.0 : metric.whole + metric.across_edge;
   Eigen::Matrix<double, 6, 6> tensor;
   for (int row = 0; row < 6; ++row) {
     for (int column = 0; column < 6; ++column) {
       const double* sum = sums + kLanes * (6 * row + column);
-      tensor(row, column) = (sum[0] + sum[1]) + (sum[2] + sum[3]);
+      tensor(row, column) = scale * ((sum[0] + sum[1]) + (sum[2] + sum[3]));
     }
   }
   return tensor;
