@@ -50,12 +50,14 @@ function(lightfit_library name)
     PUBLIC ${ARG_DEPS} PRIVATE $<BUILD_INTERFACE:lightfit_settings> ${ARG_PRIVATE_DEPS})
 endfunction()
 
-# lightfit_test(folder/name_test DEPS ...): CTest names are folder/Suite.Test, with the folder as label.
+# lightfit_test(folder/name_test DEPS ...), paths relative to tests/: CTest names are
+# folder/Suite.Test, with the folder as label.
 function(lightfit_test path)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPS" ${ARGN})
   string(REPLACE "/" "_" target ${path})
   get_filename_component(folder ${path} DIRECTORY)
-  add_executable(${target} ${path}.cc ${ARG_SOURCES})
+  list(TRANSFORM ARG_SOURCES PREPEND ${PROJECT_SOURCE_DIR}/tests/)
+  add_executable(${target} ${PROJECT_SOURCE_DIR}/tests/${path}.cc ${ARG_SOURCES})
   target_link_libraries(${target} PRIVATE
     ${ARG_DEPS} lightfit_settings GTest::gmock GTest::gtest_main rapidcheck rapidcheck_gtest)
   gtest_discover_tests(${target}

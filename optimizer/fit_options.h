@@ -95,7 +95,7 @@ struct FitOptions {
   int line_search_rounds = 3;
 
   // kGlobal: directions in which candidates are spread over the polar polygon. >= 3.
-  int grid_directions = 10;
+  int grid_directions = 12;
 
   // Evaluate every candidate sample by sample, receiver by receiver, as the paper does, instead of
   // from the summary: the yardstick for speed. The result is the same to rounding.

@@ -4,7 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 #include <vector>
+
+#include "optimizer/polish.h"
+#include "optimizer/refine.h"
 
 namespace lightfit {
 
@@ -13,16 +17,13 @@ namespace {
 // How far out on a spoke candidates lie, as shares of the way to the polygon's edge. w falls to one
 // minus this share on the ray that matters, so steps even out in the logarithm of the warp.
 constexpr double kSpokeShares[] = {0.4, 0.75, 0.93};
-// Refinements that are started, from the best candidates.
-constexpr int kNumRefined = 2;
-// The compass search starts with steps of this share of the way to the edge ...
-constexpr double kPolishStep = 0.02;
-// ... and ends at this one.
-constexpr double kPolishStepEnd = 5e-4;
-
-Eigen::Vector2d AxisParameters(const AffineFit& fit) {
-  return fit.map_from_ray.row(2).head<2>().transpose() / fit.map_from_ray(2, 2);
-}
+// Candidates that are refined, and how far apart they must be in (a, b).
+constexpr int kNumRefined = 3;
+constexpr double kMinDistance = 0.25;
+// A candidate this much above the best is not worth refining.
+constexpr double kRefinedFactor = 2.0;
+// Nor is one this much above the best worth polishing once refined.
+constexpr double kPolishedFactor = 1.2;
 
 // How far from the origin the polar polygon's edge is in a direction.
 double DistanceToEdge(const Polygon& hull, double min_w, const Eigen::Vector2d& direction) {
@@ -31,31 +32,25 @@ double DistanceToEdge(const Polygon& hull, double min_w, const Eigen::Vector2d& 
   return (1.0 - min_w) / steepest;
 }
 
-}  // namespace
-
-AffineFit PolishAxis(AxisEvaluator& evaluator, const AffineFit& start) {
-  AffineFit best = start;
-  Eigen::Vector2d last_move = Eigen::Vector2d::Zero();
-  for (double step = kPolishStep; step >= kPolishStepEnd;) {
-    const Eigen::Vector2d here = AxisParameters(best);
-    std::vector<Eigen::Vector2d> moves = {{step, 0.0}, {-step, 0.0}, {0.0, step}, {0.0, -step}};
-    if (last_move != Eigen::Vector2d::Zero()) moves.insert(moves.begin(), last_move);
-    bool improved = false;
-    for (const Eigen::Vector2d& move : moves) {
-      const std::optional<AffineFit> fit = evaluator.Evaluate((here + move).homogeneous());
-      if (!fit.has_value() || !(fit->energy < best.energy)) continue;
-      improved = fit->energy < best.energy * (1.0 - 1e-5);
-      best = *fit;
-      last_move = move;
+// The best candidates, best first, no two close together.
+std::vector<AffineFit> SelectCandidates(std::vector<AffineFit> candidates) {
+  std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
+    return a.energy < b.energy;
+  });
+  std::vector<AffineFit> selected;
+  for (const AffineFit& candidate : candidates) {
+    if (selected.size() == kNumRefined || candidate.energy > kRefinedFactor * candidates[0].energy) {
       break;
     }
-    if (!improved) {
-      step *= 0.5;
-      last_move.setZero();
-    }
+    const bool is_apart = std::all_of(selected.begin(), selected.end(), [&](const AffineFit& other) {
+      return (AxisParameters(candidate) - AxisParameters(other)).norm() >= kMinDistance;
+    });
+    if (is_apart) selected.push_back(candidate);
   }
-  return best;
+  return selected;
 }
+
+}  // namespace
 
 SearchResult GlobalSearch(const Summary& summary,
                           AxisEvaluator& evaluator,
@@ -78,29 +73,37 @@ SearchResult GlobalSearch(const Summary& summary,
     const double edge = DistanceToEdge(summary.cover.hull, evaluator.min_w(), direction);
     for (const double share : kSpokeShares) consider(share * edge * direction);
   }
-  std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
-    return a.energy < b.energy;
-  });
+  candidates = SelectCandidates(std::move(candidates));
   result.fit = candidates.front();
   result.trace.push_back({"grid", evaluator.num_evaluations(), result.fit.energy});
 
-  int refine_evaluations = 0;
-  const int num_refined = std::min<int>(kNumRefined, static_cast<int>(candidates.size()));
-  for (int i = 0; i < num_refined; ++i) {
-    RefineResult refined = RefineAxis(
-        summary, evaluator.problem(), evaluator.min_w(), refiner, candidates[i]);
-    refine_evaluations += refined.evaluations;
-    if (refined.fit.energy < result.fit.energy || (i == 0 && !refined.report.empty())) {
+  int evaluations = evaluator.num_evaluations();
+  std::vector<AffineFit> refined_fits;
+  for (const AffineFit& candidate : candidates) {
+    RefineResult refined =
+        RefineAxis(summary, evaluator.problem(), evaluator.min_w(), refiner, candidate);
+    evaluations += refined.evaluations;
+    if (refined.fit.energy < result.fit.energy || solver_report->empty()) {
       *solver_report = refined.report;
     }
     if (refined.fit.energy < result.fit.energy) result.fit = refined.fit;
+    refined_fits.push_back(refined.fit);
   }
-  result.trace.push_back(
-      {"refine", evaluator.num_evaluations() + refine_evaluations, result.fit.energy});
+  result.trace.push_back({"refine", evaluations, result.fit.energy});
 
-  result.fit = PolishAxis(evaluator, result.fit);
-  result.trace.push_back(
-      {"polish", evaluator.num_evaluations() + refine_evaluations, result.fit.energy});
+  const auto polish = [&](Polish thoroughness, const AffineFit& fit) {
+    const RefineResult polished =
+        PolishAxis(summary, evaluator.problem(), evaluator.min_w(), thoroughness, fit);
+    evaluations += polished.evaluations;
+    if (polished.fit.energy < result.fit.energy) result.fit = polished.fit;
+  };
+  // What is far behind after Ceres does not catch up.
+  const double limit = kPolishedFactor * result.fit.energy;
+  for (const AffineFit& fit : refined_fits) {
+    if (fit.energy <= limit && refined_fits.size() > 1) polish(Polish::kQuick, fit);
+  }
+  polish(Polish::kThorough, AffineFit(result.fit));
+  result.trace.push_back({"polish", evaluations, result.fit.energy});
   return result;
 }
 

@@ -14,14 +14,10 @@ namespace lightfit {
 namespace {
 
 // Steps and gains (relative to the start's energy) below which refinement ends.
-constexpr double kStepTolerance = 1e-6;
-constexpr double kEnergyTolerance = 1e-7;
-constexpr int kMaxIterations = 12;
+constexpr double kStepTolerance = 1e-5;
+constexpr double kEnergyTolerance = 1e-5;
+constexpr int kMaxIterations = 8;
 constexpr double kUnusableResidual = 1e3;
-
-Eigen::Vector2d AxisParameters(const AffineFit& fit) {
-  return fit.map_from_ray.row(2).head<2>().transpose() / fit.map_from_ray(2, 2);
-}
 
 // Derivative of a row h over p, 3x3, from the rays that its strip touches: each gives one equation
 // h.X = t p.X with t the texel coordinate of that side. A strip that touches only two rays keeps its
@@ -70,6 +66,10 @@ class CeresCost final : public ceres::SizedCostFunction<18, 2> {
 
 }  // namespace
 
+Eigen::Vector2d AxisParameters(const AffineFit& fit) {
+  return fit.map_from_ray.row(2).head<2>().transpose() / fit.map_from_ray(2, 2);
+}
+
 ReducedEnergyCost::ReducedEnergyCost(const Summary& summary,
                                      const AffineProblem& problem,
                                      double min_w,
@@ -110,22 +110,45 @@ Eigen::Matrix<double, 18, 1> ReducedEnergyCost::Residuals(
   return residuals;
 }
 
+std::array<Eigen::Matrix3d, 2> ReducedEnergyCost::RowDerivatives(const AffineFit& fit) const {
+  const Polygon& hull = summary_.cover.hull;
+  const auto texels = [this](int size) {
+    return InnerTexels(size, problem_.margin_percent, problem_.margin_texels);
+  };
+  return {RowDerivative(fit.contacts[0], hull, texels(problem_.map.width)),
+          RowDerivative(fit.contacts[1], hull, texels(problem_.map.height))};
+}
+
+Eigen::Vector2d ReducedEnergyCost::GradientAt(const AffineFit& fit) const {
+  if (problem_.affine != Affine::kMinEnergyParallelogram) {
+    constexpr double kStep = 1e-5;
+    const Eigen::Vector2d ab = AxisParameters(fit);
+    Eigen::Vector2d gradient;
+    for (int k = 0; k < 2; ++k) {
+      const std::optional<AffineFit> ahead = FitAt(ab + kStep * Eigen::Vector2d::Unit(k));
+      const std::optional<AffineFit> behind = FitAt(ab - kStep * Eigen::Vector2d::Unit(k));
+      gradient(k) = ((ahead ? ahead->energy : fit.energy) - (behind ? behind->energy : fit.energy)) /
+                    (kStep * std::max(1, static_cast<int>(ahead.has_value()) + behind.has_value()));
+    }
+    return gradient;
+  }
+  // E = sum r_i'G r_i with G = T p p: its derivative over all of H, then the chain rule.
+  const Eigen::Matrix3d R = fit.map_from_ray.inverse();
+  const Eigen::Matrix3d G = summary_.tensor.AtAxis(fit.map_from_ray.row(2));
+  Eigen::Matrix3d dE_dH = -2.0 * R.transpose() * G * R.leftCols<2>() * R.leftCols<2>().transpose();
+  dE_dH.row(2) = summary_.tensor.EnergyAndGradient(fit.map_from_ray).dE_dp;
+  const std::array<Eigen::Matrix3d, 2> dh_dp = RowDerivatives(fit);
+  return (dE_dH.row(0) * dh_dp[0] + dE_dH.row(1) * dh_dp[1] + dE_dH.row(2)).head<2>().transpose();
+}
+
 void ReducedEnergyCost::AnalyticJacobian(const AffineFit& fit,
                                          Eigen::Matrix<double, 18, 2>* jacobian) const {
-  const Polygon& hull = summary_.cover.hull;
-  const Eigen::Matrix3d dh1_dp = RowDerivative(
-      fit.contacts[0],
-      hull,
-      InnerTexels(problem_.map.width, problem_.margin_percent, problem_.margin_texels));
-  const Eigen::Matrix3d dh2_dp = RowDerivative(
-      fit.contacts[1],
-      hull,
-      InnerTexels(problem_.map.height, problem_.margin_percent, problem_.margin_texels));
+  const std::array<Eigen::Matrix3d, 2> dh_dp = RowDerivatives(fit);
   const Eigen::Matrix3d R = fit.map_from_ray.inverse();
   for (int k = 0; k < 2; ++k) {
     Eigen::Matrix3d dH;
-    dH.row(0) = dh1_dp.col(k);
-    dH.row(1) = dh2_dp.col(k);
+    dH.row(0) = dh_dp[0].col(k);
+    dH.row(1) = dh_dp[1].col(k);
     dH.row(2) = Eigen::RowVector3d::Unit(k);
     const Eigen::Matrix3d dR = -R * dH * R;
     for (int i = 0; i < 2; ++i) {
@@ -206,7 +229,7 @@ RefineResult RefineAxis(const Summary& summary,
     ceres_problem.AddResidualBlock(&ceres_cost, nullptr, parameters.data());
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::DENSE_QR;
-    options.max_num_iterations = 4 * kMaxIterations;
+    options.max_num_iterations = kMaxIterations;
     options.function_tolerance = kEnergyTolerance;
     options.parameter_tolerance = kStepTolerance;
     options.logging_type = ceres::SILENT;

@@ -13,6 +13,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <string>
 
@@ -40,10 +41,15 @@ class ReducedEnergyCost {
   // The fit at (a, b), or nothing where the axis cannot be used.
   std::optional<AffineFit> FitAt(const Eigen::Vector2d& ab) const;
 
+  // Derivative of the fit's energy over (a, b), as the Jacobian has it: pixels^2 per texel^2.
+  Eigen::Vector2d GradientAt(const AffineFit& fit) const;
+
   int num_evaluations() const { return num_evaluations_; }
 
  private:
   Eigen::Matrix<double, 18, 1> Residuals(const Eigen::Matrix3d& map_from_ray) const;
+  // Derivatives of the rows h1, h2 over p while the touched rays stay touched, 3x3 each.
+  std::array<Eigen::Matrix3d, 2> RowDerivatives(const AffineFit& fit) const;
   void AnalyticJacobian(const AffineFit& fit, Eigen::Matrix<double, 18, 2>* jacobian) const;
   void NumericJacobian(const Eigen::Vector2d& ab,
                        const AffineFit& fit,
@@ -55,6 +61,9 @@ class ReducedEnergyCost {
   Eigen::Matrix<double, 9, 9> factor_transposed_;  // L', scaled
   mutable int num_evaluations_ = 0;
 };
+
+// (a, b) of a fit's axis.
+Eigen::Vector2d AxisParameters(const AffineFit& fit);
 
 struct RefineResult {
   AffineFit fit;
