@@ -170,8 +170,12 @@ class StripSearch {
       starts.push_back(AtBreakpoint(i));
       const Eigen::Vector2d from = polar_[i].row;
       const Eigen::Vector2d to = NextRow(i);
-      const double angle = std::atan2(Cross(from, to), from.dot(to));
-      const int num_between = static_cast<int>(angle / kMaxStartAngle);
+      // Most polar edges are short: no need to ask for the angle.
+      const double sine = Cross(from, to), cosine = from.dot(to);
+      const int num_between =
+          sine < kMaxStartAngle * cosine
+              ? 0
+              : static_cast<int>(std::atan2(sine, cosine) / kMaxStartAngle);
       for (int k = 1; k <= num_between; ++k) {
         const double share = static_cast<double>(k) / (num_between + 1);
         starts.push_back({from + share * (to - from), i, false});

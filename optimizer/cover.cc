@@ -109,6 +109,26 @@ std::array<Eigen::Vector4d, 8> Corners(const DepthTile& tile) {
   return corners;
 }
 
+// The first receiver of every tile that has any, as screen points (x, y, d, 1).
+std::vector<Eigen::Vector4d> OneReceiverPerTile(const Receivers& receivers, size_t grid) {
+  const Readback& readback = receivers.readback;
+  const auto first_receiver = [&](const DepthTile& tile) -> Eigen::Vector4d {
+    for (int y = tile.y_begin; y < tile.y_end; ++y) {
+      for (int x = tile.x_begin; x < tile.x_end; ++x) {
+        const double depth = readback.depth[static_cast<size_t>(y) * readback.width() + x];
+        if (!receivers.affine_depth.IsSurface(depth)) continue;
+        return {x + 0.5, y + 0.5, receivers.affine_depth.At(x, y, depth), 1.0};
+      }
+    }
+    return Eigen::Vector4d::Zero();  // not reached: the tile has a receiver
+  };
+  std::vector<Eigen::Vector4d> found;
+  for (const DepthTile& tile : receivers.tile_grids[grid].tiles) {
+    if (tile.num_receivers > 0) found.push_back(first_receiver(tile));
+  }
+  return found;
+}
+
 // The convex hull of the rays of one read-back, seen along the third axis of a frame.
 class HullBuilder {
  public:
@@ -118,7 +138,9 @@ class HullBuilder {
   Polygon ExactHull() {
     // One receiver of every middling tile gives a first hull that is not far off.
     const size_t seeds = receivers_.tile_grids.size() > 1 ? 1 : 0;
-    for (const DepthTile& tile : receivers_.tile_grids[seeds].tiles) AddFirstReceiver(tile);
+    for (const Eigen::Vector4d& receiver : OneReceiverPerTile(receivers_, seeds)) {
+      pending_.push_back(Project(receiver));
+    }
     UpdateHull();
     // Then every tile whose box reaches out of what is known is looked into, coarse to fine.
     const size_t coarsest = receivers_.tile_grids.size() - 1;
@@ -128,7 +150,7 @@ class HullBuilder {
   }
 
  private:
-  static constexpr size_t kMaxPending = 48;
+  static constexpr size_t kMaxPending = 128;
 
   Eigen::Vector2d Project(const Eigen::Vector4d& screen) const {
     return (frame_from_screen_ * screen).hnormalized();
@@ -161,20 +183,6 @@ class HullBuilder {
       for (int column = first_column; column < std::min(first_column + kSide, finer.columns);
            ++column) {
         Visit(level - 1, static_cast<size_t>(row) * finer.columns + column);
-      }
-    }
-  }
-
-  void AddFirstReceiver(const DepthTile& tile) {
-    if (tile.num_receivers == 0) return;
-    const AffineDepth& affine_depth = receivers_.affine_depth;
-    for (int y = tile.y_begin; y < tile.y_end; ++y) {
-      for (int x = tile.x_begin; x < tile.x_end; ++x) {
-        const double depth =
-            receivers_.readback.depth[static_cast<size_t>(y) * receivers_.readback.width() + x];
-        if (!affine_depth.IsSurface(depth)) continue;
-        pending_.push_back(Project({x + 0.5, y + 0.5, affine_depth.At(x, y, depth), 1.0}));
-        return;
       }
     }
   }
@@ -262,6 +270,12 @@ absl::StatusOr<RayCover> CoverReceivers(const Receivers& receivers, const Light&
       if (axis.has_value()) break;
     }
     if (!axis.has_value()) {
+      // Look at every receiver, unless a few of them surround the light already.
+      std::vector<Eigen::Vector3d> some_rays;
+      for (const Eigen::Vector4d& receiver : OneReceiverPerTile(receivers, 0)) {
+        some_rays.push_back(ray_from_screen * receiver);
+      }
+      if (!FeasibleAxis(some_rays).has_value()) return SurroundedError(light);
       pixels = PixelGrid(receivers);
       boxes = &pixels;
       axis = AxisOfBoxes(pixels, ray_from_screen);
