@@ -71,7 +71,7 @@ std::vector<Breakpoint> PolarOfDifference(const std::vector<Eigen::Vector2d>& po
     (pass_low ? low : high) = next(pass_low ? low : high);
     // Edges in one direction share a breakpoint, or rounding would make false valleys of them.
     if (polar.empty() || !parallel(polar.back().row, normal)) {
-      polar.push_back({normal / width, {}, low, high});
+      polar.push_back({normal / width, Eigen::Vector2d::Zero(), low, high});
     }
     polar.back().low = low;
     polar.back().high = high;

@@ -1,0 +1,35 @@
+// cli/comparison.h
+//
+// One light fitted by the method asked for, beside the two methods that people know.
+#pragma once
+
+#include "absl/status/statusor.h"
+#include "geometry/light.h"
+#include "optimizer/fit_options.h"
+#include "optimizer/light_matrix.h"
+#include "optimizer/readback.h"
+
+namespace lightfit {
+
+struct Comparison {
+  Light light;
+  absl::StatusOr<LightMatrix> focused;    // the usual focused shadow map, without a warp
+  absl::StatusOr<LightMatrix> published;  // Chong and Gortler's Algorithm 1
+  absl::StatusOr<LightMatrix> final;      // the method asked for
+  double final_time_ms = 0;               // for this light on its own, read-back in memory
+};
+
+// The yardsticks' options: the samples, the metric and the margin are those of `options`, so that
+// the energies can be compared.
+FitOptions FocusedOptions(const FitOptions& options);
+FitOptions PublishedOptions(const FitOptions& options);
+
+Comparison Compare(const Readback& readback,
+                   const Light& light,
+                   MapSize map,
+                   const FitOptions& options);
+
+// The same for a light that could not even be read.
+Comparison FailedComparison(const Light& light, const absl::Status& status);
+
+}  // namespace lightfit

@@ -1,0 +1,174 @@
+#include "cli/fit.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "cli/comparison.h"
+#include "cli/exit_code.h"
+#include "cli/fit_inputs.h"
+#include "cli/fit_report.h"
+#include "cli/output_file.h"
+#include "cli/picture.h"
+#include "cli/progress.h"
+#include "cli/text.h"
+#include "io/result_json.h"
+
+namespace lightfit {
+namespace {
+
+absl::Status CheckOutputs(const FitFlags& flags) {
+  for (const auto& [flag, path] :
+       {std::pair{"--json", flags.json_path}, std::pair{"--picture", flags.picture_path}}) {
+    if (path.empty()) continue;
+    absl::Status status = CheckWritable(flag, path);
+    if (!status.ok()) return status;
+  }
+  return absl::OkStatus();
+}
+
+void WarnAboutPixels(const std::vector<Comparison>& comparisons) {
+  for (const Comparison& comparison : comparisons) {
+    if (!comparison.final.ok()) continue;
+    const int64_t num_invalid = comparison.final->samples.invalid_depth;
+    if (num_invalid > 0) {
+      PrintWarning(absl::StrCat(num_invalid,
+                                num_invalid == 1 ? " pixel" : " pixels",
+                                " with an invalid depth (NaN, negative or out of range) ignored"));
+    }
+    return;  // The depth is the same for all lights.
+  }
+}
+
+// Names the lights without a matrix on stderr and returns how many there are.
+int PrintFailedLights(const std::vector<Comparison>& comparisons) {
+  int num_failed = 0;
+  for (const Comparison& comparison : comparisons) {
+    if (comparison.final.ok()) continue;
+    ++num_failed;
+    std::string message(comparison.final.status().message());
+    const std::string name = absl::StrCat("light \"", comparison.light.name, "\"");
+    if (message.find(name) == std::string::npos) message = absl::StrCat(name, ": ", message);
+    PrintError(absl::StrCat("no matrix for ", message));
+  }
+  return num_failed;
+}
+
+FitReport JsonReport(const FitFlags& flags,
+                     const FitOptions& options,
+                     const ReadbackFile& file,
+                     const std::vector<Comparison>& comparisons) {
+  FitReport report;
+  report.source = flags.readback_path;
+  report.camera = file.camera;
+  report.depth_kind = file.depth_kind;
+  report.options = options;
+  report.map = flags.map;
+  report.clip = flags.clip;
+  for (const Comparison& comparison : comparisons) {
+    LightFit fit;
+    fit.light = comparison.light;
+    fit.matrix = comparison.final;
+    if (comparison.focused.ok()) fit.energy_focused = comparison.focused->energy;
+    if (comparison.published.ok()) fit.energy_as_published = comparison.published->energy;
+    report.lights.push_back(std::move(fit));
+  }
+  return report;
+}
+
+// The folder tells frames of one name apart: "yard_180/0001.exr".
+std::string TitleOf(const std::string& path) {
+  const std::filesystem::path file(path);
+  return (file.parent_path().filename() / file.filename()).string();
+}
+
+// What is computed before anything is printed, so that the progress bar has the terminal to itself.
+struct Outcome {
+  std::vector<Comparison> comparisons;
+  absl::StatusOr<Canvas> picture = absl::UnknownError("not drawn");
+};
+
+Outcome FitAndDraw(const FitFlags& flags, const FitOptions& options, const FitInputs& inputs) {
+  const Readback readback = inputs.file.View();
+  const bool draws = !flags.picture_path.empty();
+  Typeface typeface;
+  if (draws) {
+    typeface = Typeface::Find();
+    if (!typeface.found()) {
+      PrintWarning(
+          "no typeface found, so the picture has no text; install fonts-dejavu-core or set "
+          "LIGHTFIT_FONT to a .ttf file");
+    }
+  }
+  Outcome outcome;
+  Progress progress(static_cast<int>(inputs.lights.size()) + (draws ? 1 : 0), flags.quiet);
+  for (size_t i = 0; i < inputs.lights.size(); ++i) {
+    const Light& light = inputs.lights[i];
+    const absl::Status& light_status = inputs.file.light_status[i];
+    progress.Begin(absl::StrCat("fitting ", light.name));
+    outcome.comparisons.push_back(light_status.ok() ? Compare(readback, light, flags.map, options)
+                                                    : FailedComparison(light, light_status));
+    progress.Advance();
+  }
+  if (draws) {
+    progress.Begin("drawing");
+    const PictureOptions picture = {
+        TitleOf(flags.readback_path), options.samples, MethodText(options)};
+    outcome.picture = DrawPicture(readback, outcome.comparisons, flags.map, picture, typeface);
+  }
+  return outcome;
+}
+
+absl::Status WriteOutputs(const FitFlags& flags,
+                          const FitOptions& options,
+                          const ReadbackFile& file,
+                          const Outcome& outcome) {
+  if (!flags.json_path.empty()) {
+    const FitReport report = JsonReport(flags, options, file, outcome.comparisons);
+    absl::Status status = WriteFitResultJson(flags.json_path, FitResultToProto(report));
+    if (!status.ok()) return status;
+  }
+  if (flags.picture_path.empty()) return absl::OkStatus();
+  if (!outcome.picture.ok()) return outcome.picture.status();
+  return WritePng(*outcome.picture, flags.picture_path);
+}
+
+int Fail(ExitCode code, const absl::Status& status) {
+  PrintError(status.message());
+  return code;
+}
+
+}  // namespace
+
+std::function<int()> DeclareFit(CLI::App* app) {
+  const auto flags = std::make_shared<FitFlags>();
+  DeclareFitFlags(app, flags.get());
+  return [flags] { return RunFit(*flags); };
+}
+
+int RunFit(const FitFlags& flags) {
+  const FitOptions options = flags.as_published ? PublishedOptions(flags.options) : flags.options;
+  absl::Status status = ValidateFitOptions(options);
+  if (!status.ok()) return Fail(kExitUsage, status);
+  status = CheckOutputs(flags);
+  if (!status.ok()) return Fail(kExitBadInput, status);
+  const absl::StatusOr<FitInputs> inputs = ReadFitInputs(flags);
+  if (!inputs.ok()) return Fail(kExitBadInput, inputs.status());
+
+  const Outcome outcome = FitAndDraw(flags, options, *inputs);
+  if (!flags.quiet) {
+    const std::string text = FitReportText(
+        flags.readback_path, inputs->file.View(), flags.map, options, outcome.comparisons);
+    std::fputs(text.c_str(), stdout);
+    std::fflush(stdout);
+  }
+  WarnAboutPixels(outcome.comparisons);
+  const int num_failed = PrintFailedLights(outcome.comparisons);
+  status = WriteOutputs(flags, options, inputs->file, outcome);
+  if (!status.ok()) return Fail(kExitBadInput, status);
+  return num_failed > 0 ? kExitIncomplete : kExitOk;
+}
+
+}  // namespace lightfit

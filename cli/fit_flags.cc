@@ -1,0 +1,243 @@
+#include "cli/fit_flags.h"
+
+#include <algorithm>
+
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_split.h"
+#include "cli/choices.h"
+#include "cli/suggest.h"
+#include "io/lights_file.h"
+
+namespace lightfit {
+namespace {
+
+constexpr int kMaxMapSize = 65536;  // texels along one side
+
+constexpr char kExamples[] =
+    "Examples:\n"
+    "  lightfit fit 0001.exr --lights scene.json --json matrices.json --picture gain.png\n"
+    "  lightfit fit 0001.exr --light sun=sun:-0.3,0.2,-1 --map 2048x1024 --clip direct3d\n"
+    "  lightfit fit 0001.exr --lights scene.json --only key --as-published\n"
+    "\n"
+    "Units: positions and depth in world units, maps in texels, images in pixels.\n"
+    "The read-back holds a depth channel Z and one channel shadow.LIGHT per light, above 0.5 "
+    "where\n"
+    "that light is blocked; the camera comes from worldToCamera and worldToNDC in its header.";
+
+// An option whose value is one of a few words. CLI11's own transformer would also take the numbers
+// behind the words.
+template <typename Value, typename Target>
+CLI::Option* AddChoice(CLI::App* app,
+                       const std::string& flag,
+                       const Words<Value>& words,
+                       Target* target,
+                       const std::string& meaning) {
+  const auto parse = [=](const std::string& text) {
+    for (const auto& [word, value] : words) {
+      if (word == text) {
+        *target = value;
+        return;
+      }
+    }
+    const std::vector<std::string> choices = WordsOnly(words);
+    throw CLI::ValidationError(flag,
+                               absl::StrCat("there is no \"",
+                                            text,
+                                            "\", want ",
+                                            absl::StrJoin(choices, ", "),
+                                            DidYouMean(text, choices)));
+  };
+  return app->add_option_function<std::string>(flag, parse, meaning)
+      ->type_name(absl::StrJoin(WordsOnly(words), "|"));
+}
+
+void DeclareInput(CLI::App* app, FitFlags* flags) {
+  const std::string group = "Input";
+  app->add_option("readback", flags->readback_path, "OpenEXR file with depth and shadow channels")
+      ->required()
+      ->type_name("READBACK.exr");
+  app->add_option("--lights", flags->lights_path, "JSON file with the lights")
+      ->type_name("FILE")
+      ->group(group);
+  app->add_option_function<std::vector<std::string>>(
+         "--light",
+         [flags](const std::vector<std::string>& texts) {
+           for (const std::string& text : texts) {
+             absl::StatusOr<Light> light = ParseLight(text);
+             if (!light.ok()) {
+               throw CLI::ValidationError("--light", std::string(light.status().message()));
+             }
+             flags->extra_lights.push_back(*std::move(light));
+           }
+         },
+         "A light: where it is, or the direction in which it travels")
+      ->type_name("NAME=point:X,Y,Z|NAME=sun:X,Y,Z")
+      ->expected(1)
+      ->take_all()
+      ->group(group);
+  app->add_option("--only", flags->only, "Fit this light only (may be repeated)")
+      ->type_name("LIGHT")
+      ->expected(1)
+      ->take_all()
+      ->group(group);
+  AddChoice(app,
+            "--depth-kind",
+            DepthKindWords(),
+            &flags->depth_kind,
+            "What the depth channel holds [camera-z, or as the camera file says]")
+      ->group(group);
+  app->add_option("--depth-channel", flags->depth_channel, "Name of the depth channel [Z]")
+      ->type_name("CHANNEL")
+      ->group(group);
+  app->add_option("--shadow-channel",
+                  flags->shadow_channel_format,
+                  "Name of the shadow channels [shadow.{light}]")
+      ->type_name("FORMAT")
+      ->group(group);
+  app->add_option("--shadow-bits-channel",
+                  flags->shadow_bits_channel,
+                  "UINT channel that holds all shadows, light l in bit l")
+      ->type_name("CHANNEL")
+      ->group(group);
+}
+
+void DeclareCamera(CLI::App* app, FitFlags* flags) {
+  const std::string group = "Camera";
+  app->add_option("--camera", flags->camera_path, "JSON file with the camera, or a scene file")
+      ->type_name("FILE")
+      ->group(group);
+  app->add_option("--frame", flags->frame, "Which frame of the --camera scene file, from 0 [0]")
+      ->type_name("N")
+      ->check(CLI::NonNegativeNumber)
+      ->group(group);
+  app->add_option_function<std::string>(
+         "--camera-convention",
+         [flags](const std::string& words) {
+           const absl::StatusOr<CameraConvention> convention = ParseCameraConvention(words);
+           if (!convention.ok()) {
+             throw CLI::ValidationError("--camera-convention",
+                                        std::string(convention.status().message()));
+           }
+           flags->camera_exr.convention = *convention;
+         },
+         "Who wrote worldToCamera and worldToNDC: openexr, mantra or pbrt; words such as "
+         "column-vectors,y-up change it [openexr]")
+      ->type_name("WORDS")
+      ->group(group);
+  app->add_option("--near", flags->camera_exr.near, "Near clip plane, world units (NDC depth only)")
+      ->type_name("DISTANCE")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+  app->add_option("--far", flags->camera_exr.far, "Far clip plane, world units (NDC depth only)")
+      ->type_name("DISTANCE")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+  app->add_option("--pixel-aspect",
+                  flags->camera_exr.pixel_aspect,
+                  "Width over height of a pixel [as the file says]")
+      ->type_name("RATIO")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+}
+
+void DeclareMap(CLI::App* app, FitFlags* flags) {
+  const std::string group = "Map";
+  app->add_option_function<std::string>(
+         "--map",
+         [flags](const std::string& text) {
+           const absl::StatusOr<MapSize> map = ParseMapSize(text);
+           if (!map.ok()) throw CLI::ValidationError("--map", std::string(map.status().message()));
+           flags->map = *map;
+         },
+         "Size of the shadow map in texels [1024x1024]")
+      ->type_name("WIDTHxHEIGHT")
+      ->group(group);
+  AddChoice(app,
+            "--clip",
+            ClipWords(),
+            &flags->clip,
+            "Clip space of clipFromWorld in the JSON file [vulkan]")
+      ->group(group);
+}
+
+void DeclareMethod(CLI::App* app, FitFlags* flags) {
+  const std::string group = "Method";
+  FitOptions* options = &flags->options;
+  CLI::Option* search = AddChoice(app,
+                                  "--search",
+                                  SearchWords(),
+                                  &options->search,
+                                  "How the projective axis is found [global]");
+  CLI::Option* affine = AddChoice(app,
+                                  "--affine",
+                                  AffineWords(),
+                                  &options->affine,
+                                  "How the map is laid around the receivers [parallelogram]");
+  search->group(group);
+  affine->group(group);
+  AddChoice(app,
+            "--metric",
+            MetricWords(),
+            &options->metric,
+            "What is summed over the shadow edges; -edge: across the edge only [l2]")
+      ->group(group);
+  app->add_flag(
+         "--as-published", flags->as_published, "Chong and Gortler's Algorithm 1 to the letter")
+      ->excludes(search)
+      ->excludes(affine)
+      ->group(group);
+  app->add_option("--margin-percent",
+                  options->margin_percent,
+                  "The map reaches this much beyond the receivers on every side [1]")
+      ->type_name("PERCENT")
+      ->check(CLI::Range(0.0, 100.0))
+      ->group(group);
+  app->add_option("--min-samples",
+                  options->samples.min_samples,
+                  "Fewer usable shadow-edge pixels than this are not fitted [8]")
+      ->type_name("COUNT")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+}
+
+void DeclareOutput(CLI::App* app, FitFlags* flags) {
+  const std::string group = "Output";
+  app->add_option("--json", flags->json_path, "Write the matrices and figures to this file")
+      ->type_name("FILE.json")
+      ->group(group);
+  app->add_option("--picture", flags->picture_path, "Draw before and after, per light")
+      ->type_name("FILE.png")
+      ->group(group);
+  app->add_flag("--quiet", flags->quiet, "No table and no progress; errors and warnings only")
+      ->group(group);
+}
+
+}  // namespace
+
+void DeclareFitFlags(CLI::App* app, FitFlags* flags) {
+  DeclareInput(app, flags);
+  DeclareCamera(app, flags);
+  DeclareMap(app, flags);
+  DeclareMethod(app, flags);
+  DeclareOutput(app, flags);
+  app->footer(kExamples);
+}
+
+absl::StatusOr<MapSize> ParseMapSize(const std::string& text) {
+  const std::vector<std::string> sides = absl::StrSplit(text, 'x');
+  MapSize map;
+  if (sides.size() != 2 || !absl::SimpleAtoi(sides[0], &map.width) ||
+      !absl::SimpleAtoi(sides[1], &map.height)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("\"", text, "\" is no size, want WIDTHxHEIGHT in texels such as 1024x1024"));
+  }
+  if (std::min(map.width, map.height) < 1 || std::max(map.width, map.height) > kMaxMapSize) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(text, ": want 1 to ", kMaxMapSize, " texels along each side"));
+  }
+  return map;
+}
+
+}  // namespace lightfit

@@ -1,0 +1,67 @@
+// cli/main.cc
+//
+// `lightfit`: finds the verb, hands over, and turns every outcome into an exit code.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "cli/exit_code.h"
+#include "cli/fit.h"
+#include "cli/verb.h"
+
+namespace lightfit {
+namespace {
+
+constexpr Verb kVerbs[] = {
+    {"fit", "Fit the light matrices of one read-back (an EXR file)", DeclareFit},
+};
+
+constexpr char kFooter[] =
+    "Exit codes: 0 done, 1 wrong usage, 2 an input or output cannot be used, 3 done but for some\n"
+    "lights, which are named on stderr.\n"
+    "Try: lightfit fit --help";
+
+int Main(int argc, char** argv) {
+  CLI::App app("Fits shadow-map matrices to what the camera sees.", "lightfit");
+  app.set_version_flag("--version", "lightfit " LIGHTFIT_VERSION);
+  app.require_subcommand(1);
+  app.footer(kFooter);
+  std::vector<std::pair<CLI::App*, std::function<int()>>> verbs;
+  for (const Verb& verb : kVerbs) {
+    CLI::App* subcommand = app.add_subcommand(verb.name, verb.summary);
+    verbs.emplace_back(subcommand, verb.declare(subcommand));
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    PrintError(error.what());
+    const bool has_verb = !app.get_subcommands().empty();
+    std::fprintf(stderr,
+                 "Run lightfit %s%s--help for the options.\n",
+                 has_verb ? app.get_subcommands().front()->get_name().c_str() : "",
+                 has_verb ? " " : "");
+    return kExitUsage;
+  }
+  for (const auto& [subcommand, run] : verbs) {
+    if (subcommand->parsed()) return run();
+  }
+  return kExitUsage;
+}
+
+}  // namespace
+}  // namespace lightfit
+
+int main(int argc, char** argv) {
+  // The library throws nothing; a library beneath it might, out of memory for one.
+  try {
+    return lightfit::Main(argc, argv);
+  } catch (const std::exception& error) {
+    lightfit::PrintError(error.what());
+    return lightfit::kExitBadInput;
+  }
+}

@@ -1,0 +1,38 @@
+// cli/progress.h
+//
+// A progress bar on stderr for work that takes a while.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace lightfit {
+
+// Silent unless stderr is a terminal and more than a second has passed. The bar is wiped when the
+// object goes, so that it never mixes with other output.
+class Progress {
+ public:
+  explicit Progress(int num_steps, bool quiet = false);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  // Says what is being done now. Wipes nothing until the next call.
+  void Begin(const std::string& what);
+
+  // One of the steps is done.
+  void Advance();
+
+ private:
+  void Show();
+
+  using Clock = std::chrono::steady_clock;
+  const int num_steps_;
+  const bool enabled_;
+  const Clock::time_point start_ = Clock::now();
+  int num_done_ = 0;
+  bool shown_ = false;
+  std::string what_;
+};
+
+}  // namespace lightfit

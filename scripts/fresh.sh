@@ -1,0 +1,72 @@
+#!/usr/bin/env bash
+# ./run fresh [VERB...] : does a new machine get from nothing to a result?
+# Makes a bare Debian 12 in a temporary folder, puts a clone of the current commit into it and
+# nothing else, and calls ./run VERB there (default: demo, then test). Needs root and 6 GB of disk.
+#
+# The mounts live in a mount namespace of their own and processes in a process namespace of their
+# own: both end with this script, however it ends, so that only the folder is left to remove.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+# shellcheck source=scripts/common.sh
+source scripts/common.sh
+
+# The mirror that this machine's apt uses for Debian 12, in either format of its lists.
+debian_mirror() {
+  local mirror
+  mirror=$(cat /etc/apt/sources.list /etc/apt/sources.list.d/*.{list,sources} 2>/dev/null |
+    grep -oE 'https?://[^ ]+/debian/?( |$)' | head -n 1 || true)
+  echo "${mirror:-http://deb.debian.org/debian}"
+}
+
+# enter ROOT VERB...: the part inside the namespaces.
+enter() {
+  local root=$1 verb seconds=()
+  shift
+  mount -t proc proc "$root/proc"
+  mount --rbind /dev "$root/dev"
+  if [[ -d ../shared ]]; then  # test inputs too large for the repository, where there are any
+    mkdir -p "$root/work/shared"
+    mount --bind -o ro ../shared "$root/work/shared"
+  fi
+  for verb in "$@"; do
+    say "bare Debian 12: ./run $verb"
+    SECONDS=0
+    env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 \
+      chroot "$root" bash -c "cd /work/lightfit && ./run $verb" </dev/null ||
+      die "fresh: ./run $verb failed on a bare Debian 12 after $SECONDS s"
+    seconds+=("./run $verb: $SECONDS s")
+  done
+  say "fresh: all went well on a bare Debian 12"
+  printf '%s\n' "${seconds[@]}"
+}
+
+if [[ ${1-} == --inside ]]; then
+  shift
+  enter "$@"
+  exit
+fi
+
+((EUID == 0)) || die "fresh needs root, to make a file system and mount in it: sudo ./run fresh $*"
+command -v git >/dev/null || install_packages git
+command -v debootstrap >/dev/null || install_packages debootstrap
+git diff --quiet HEAD 2>/dev/null || say "note: changes that are not committed are left out"
+folder=$(mktemp -d "${TMPDIR:-/tmp}/lightfit_fresh.XXXXXX")
+root=$folder/root
+inside=  # process id of unshare, which ignores milder signals and takes its children along
+leave() {
+  [[ -z $inside ]] || { kill -KILL "$inside" && wait "$inside"; } 2>/dev/null || true
+  rm -rf --one-file-system "$folder"
+}
+trap leave EXIT
+trap 'exit 130' INT TERM
+
+say "making a bare Debian 12 from $(debian_mirror)"
+debootstrap --variant=minbase bookworm "$root" "$(debian_mirror)" >"$folder/log" 2>&1 ||
+  { tail -n 20 "$folder/log" >&2 && die "fresh: debootstrap failed, see above"; }
+cp /etc/resolv.conf /etc/hosts "$root/etc/"
+git clone --quiet --no-hardlinks "$PWD" "$root/work/lightfit"
+if (($# == 0)); then set -- demo test; fi
+# In the background, so that a signal ends this script at once and not after the last verb.
+unshare --mount --pid --fork --kill-child scripts/fresh.sh --inside "$root" "$@" &
+inside=$!
+wait "$inside"
