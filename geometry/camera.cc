@@ -63,10 +63,8 @@ Eigen::Matrix4d Camera::ScreenFromWorld() const { return WorldFromScreen().inver
 
 absl::Status ValidateCamera(const Camera& camera, DepthKind kind) {
   if (camera.width < 1 || camera.height < 1) {
-    return absl::InvalidArgumentError(
-        absl::StrFormat("camera: size = %dx%d, want at least 1x1 pixels",
-                        camera.width,
-                        camera.height));
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "camera: size = %dx%d, want at least 1x1 pixels", camera.width, camera.height));
   }
   if (!camera.camera_from_world.allFinite() ||
       !IsInvertible(camera.camera_from_world.topLeftCorner<3, 3>()) ||
@@ -82,9 +80,8 @@ absl::Status ValidateCamera(const Camera& camera, DepthKind kind) {
         "row (0, 0, 1)");
   }
   // Infinity is welcome as the far distance of an NDC camera, but not of an orthographic one.
-  if (IsNdc(kind) &&
-      !(camera.far > camera.near && std::isfinite(camera.near) &&
-        (camera.orthographic ? std::isfinite(camera.far) : camera.near > 0.0))) {
+  if (IsNdc(kind) && !(camera.far > camera.near && std::isfinite(camera.near) &&
+                       (camera.orthographic ? std::isfinite(camera.far) : camera.near > 0.0))) {
     return absl::InvalidArgumentError(
         absl::StrFormat("camera: near = %g, far = %g: depth of kind %s wants the clip planes, "
                         "0 < near < far",
@@ -139,8 +136,7 @@ absl::StatusOr<Camera> MakeCamera(const Eigen::Matrix4d& camera_from_world,
   clip_intrinsics.topRightCorner<2, 1>() = clip_from_forward.block<2, 1>(0, offset_column);
   // Images have their first row at the top whatever texture rows do, so y points up in clip space
   // for OpenGL and Direct3D, and down for Vulkan.
-  const bool clip_y_points_up =
-      clip.y_up || clip.depth == ClipConvention::Depth::kMinusOneToOne;
+  const bool clip_y_points_up = clip.y_up || clip.depth == ClipConvention::Depth::kMinusOneToOne;
   const double y_sign = clip_y_points_up ? -1.0 : 1.0;
   Eigen::Matrix3d screen_from_clip;
   screen_from_clip << 0.5 * width, 0.0, 0.5 * width,  //
@@ -218,9 +214,9 @@ AffineDepth::AffineDepth(const Camera& camera, DepthKind kind)
   // d = 1/z at the near and far planes (0 for infinity), or z itself: NDC depth is linear between.
   const double d_near = orthographic_ ? camera.near : 1.0 / camera.near;
   const double d_far = orthographic_ ? camera.far : 1.0 / camera.far;
-  const double ndc_near = kind == DepthKind::kNdcZeroToOne        ? 0.0
-                          : kind == DepthKind::kNdcMinusOneToOne  ? -1.0
-                                                                  : 1.0;
+  const double ndc_near = kind == DepthKind::kNdcZeroToOne       ? 0.0
+                          : kind == DepthKind::kNdcMinusOneToOne ? -1.0
+                                                                 : 1.0;
   const double ndc_far = kind == DepthKind::kNdcReversedZeroToOne ? 0.0 : 1.0;
   scale_ = (d_far - d_near) / (ndc_far - ndc_near);
   offset_ = ndc_near - d_near / scale_;

@@ -87,7 +87,8 @@ class AffineDepth {
   double At(int x, int y, double depth) const;
 
   // Whether `depth` is a surface: finite, in front of the camera and nearer than the background.
-  // The background is at or beyond kBackgroundDepth (kCameraZ, kDistance) or on the far plane (NDC).
+  // The background is at or beyond kBackgroundDepth (kCameraZ, kDistance) or on the far plane
+  // (NDC).
   bool IsSurface(double depth) const { return depth > surface_min_ && depth < surface_max_; }
 
   // Whether `depth` is neither a surface nor a background value: NaN, -inf, zero or negative

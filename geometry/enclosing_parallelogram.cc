@@ -142,18 +142,19 @@ class StripSearch {
     const Eigen::Vector2d& vertex = polar_[best.index].row;
     const Eigen::Vector2d after = NextRow(best.index) - vertex;
     const double s = Cross(vertex, b);
-    const double numerator = b.squaredNorm() * inverse_width_squared +
-                             vertex.squaredNorm() * inverse_height_squared;
+    const double numerator =
+        b.squaredNorm() * inverse_width_squared + vertex.squaredNorm() * inverse_height_squared;
     // The sign of the derivative of Energy along a direction.
     const auto falls = [&](const Eigen::Vector2d& along) {
-      return s * (inverse_height_squared * vertex.dot(along) * s - numerator * Cross(along, b)) < 0.0;
+      return s * (inverse_height_squared * vertex.dot(along) * s - numerator * Cross(along, b)) <
+             0.0;
     };
     if (falls(after)) {
       TryEdge(best.index, b, inverse_width_squared, inverse_height_squared, &best, &here);
     } else {
       const int index = Wrap(best.index - 1);
-      const Eigen::Vector2d from = best.index == 0 ? Eigen::Vector2d(-polar_[index].row)
-                                                   : polar_[index].row;
+      const Eigen::Vector2d from =
+          best.index == 0 ? Eigen::Vector2d(-polar_[index].row) : polar_[index].row;
       if (falls(from - vertex)) {
         TryEdge(index, b, inverse_width_squared, inverse_height_squared, &best, &here);
       }
@@ -172,10 +173,9 @@ class StripSearch {
       const Eigen::Vector2d to = NextRow(i);
       // Most polar edges are short: no need to ask for the angle.
       const double sine = Cross(from, to), cosine = from.dot(to);
-      const int num_between =
-          sine < kMaxStartAngle * cosine
-              ? 0
-              : static_cast<int>(std::atan2(sine, cosine) / kMaxStartAngle);
+      const int num_between = sine < kMaxStartAngle * cosine
+                                  ? 0
+                                  : static_cast<int>(std::atan2(sine, cosine) / kMaxStartAngle);
       for (int k = 1; k <= num_between; ++k) {
         const double share = static_cast<double>(k) / (num_between + 1);
         starts.push_back({from + share * (to - from), i, false});
@@ -187,7 +187,8 @@ class StripSearch {
   // Closes in on the local minimum next to start `i`, whose neighbours have more energy. By the
   // envelope theorem the slope over the fixed row is that with the searched row held; its zero is
   // found by the Illinois method (regula falsi that halves the weight of a stale end).
-  StripPair Pursue(const std::vector<Row>& starts, int i, int hint, double first, double second) const {
+  StripPair Pursue(
+      const std::vector<Row>& starts, int i, int hint, double first, double second) const {
     StripPair best = At(starts[i], hint, first, second);
     const int n = static_cast<int>(starts.size());
     // Between neighbouring starts rows lie on a straight polar edge. Across the seam of the half
@@ -204,11 +205,14 @@ class StripSearch {
       const double sign = !ahead && seam ? -1.0 : 1.0;
       const auto at = [&](double share) {
         return At({sign * (starts[i].value + share * step), index, false},
-                  best.searched.index, first, second);
+                  best.searched.index,
+                  first,
+                  second);
       };
       StripPair far = At(neighbour, best.searched.index, first, second);
       double low = 0.0, low_slope = slope;
-      double high = 1.0, high_slope = Slope(far, seam ? Eigen::Vector2d(-step) : step, first, second);
+      double high = 1.0,
+             high_slope = Slope(far, seam ? Eigen::Vector2d(-step) : step, first, second);
       for (int round = 0; round < kMaxRounds && high - low > kShareTolerance; ++round) {
         // Without a change of sign (or near a crease) bisect.
         const double share = high_slope > 0.0
@@ -326,7 +330,8 @@ EnclosingParallelogram MinEnergyParallelogram(const Polygon& polygon,
   assert(polygon.size() >= 3);
   const double metric_00 = std::sqrt(metric(0, 0));
   assert(metric_00 > 0.0);
-  // Whitening: metric = L L', and q -> L' q keeps orientation as both diagonal entries are positive.
+  // Whitening: metric = L L', and q -> L' q keeps orientation as both diagonal entries are
+  // positive.
   Eigen::Matrix2d whiten;
   whiten << metric_00, metric(0, 1) / metric_00, 0.0,
       std::sqrt(std::max(metric(1, 1) - metric(0, 1) * metric(0, 1) / metric(0, 0),

@@ -17,7 +17,8 @@
 // downhill. What is left is a function of the second strip alone, of one variable. It is sampled
 // around the boundary, at the vertices and between, and its local minima are found to rounding by
 // the zeros of the slope. Alternating the two strips, or trying hull edges only, is not enough: the
-// optimum need not be flush with any edge of K, and alternation sticks where the energy has a crease.
+// optimum need not be flush with any edge of K, and alternation sticks where the energy has a
+// crease.
 #pragma once
 
 #include <Eigen/Core>

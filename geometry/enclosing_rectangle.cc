@@ -23,9 +23,9 @@ double ShearOverBase(const Polygon& polygon,
                      const Eigen::Vector2d& origin,
                      const Eigen::Vector2d& along,
                      double base) {
-  double low = 0.0, high = base;              // extents in x of the vertices off the base
-  double shear_left_home = 0.0;               // brings every vertex to x >= 0
-  double shear_right_home = 0.0;              // brings every vertex to x <= base
+  double low = 0.0, high = base;  // extents in x of the vertices off the base
+  double shear_left_home = 0.0;   // brings every vertex to x >= 0
+  double shear_right_home = 0.0;  // brings every vertex to x <= base
   double room_right = std::numeric_limits<double>::infinity();
   double room_left = -std::numeric_limits<double>::infinity();
   bool any = false;

@@ -26,7 +26,8 @@ absl::StatusOr<Parallelogram> MinAreaRectangleCgal(const Polygon& polygon) {
   }
   CGAL::Polygon_2<Kernel> input, rectangle;
   for (const Eigen::Vector2d& vertex : polygon) input.push_back({vertex.x(), vertex.y()});
-  CGAL::min_rectangle_2(input.vertices_begin(), input.vertices_end(), std::back_inserter(rectangle));
+  CGAL::min_rectangle_2(
+      input.vertices_begin(), input.vertices_end(), std::back_inserter(rectangle));
   const auto corner = [&rectangle](int i) {
     return Eigen::Vector2d(rectangle.vertex(i).x(), rectangle.vertex(i).y());
   };

@@ -20,8 +20,8 @@ struct Light {
 
   std::string name;
   Kind kind = Kind::kDirectional;
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();       // kPoint: world units
-  Eigen::Vector3d direction = -Eigen::Vector3d::UnitZ();    // kDirectional: the way light travels
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();     // kPoint: world units
+  Eigen::Vector3d direction = -Eigen::Vector3d::UnitZ();  // kDirectional: the way light travels
   int shadow_bit = 0;  // which bit of Readback::shadow_bits tells this light's shadow, 0 ... 31
 
   static Light Point(std::string name, const Eigen::Vector3d& position, int shadow_bit = 0);
@@ -38,8 +38,8 @@ absl::Status ValidateLight(const Light& light);
 // arbitrary but fixed right-handed orthonormal frame whose third axis is `forward` (a point light)
 // or the direction of travel (a directional one; `forward` is ignored). Homogeneous scale of the
 // world point carries over, so points in front of the camera keep the light's own sign.
-Eigen::Matrix<double, 3, 4> RayFromWorld(
-    const Light& light, const Eigen::Vector3d& forward = Eigen::Vector3d::UnitZ());
+Eigen::Matrix<double, 3, 4> RayFromWorld(const Light& light,
+                                         const Eigen::Vector3d& forward = Eigen::Vector3d::UnitZ());
 
 // Rows are an orthonormal right-handed frame with `third` (non-zero) as its last axis.
 Eigen::Matrix3d FrameAlong(const Eigen::Vector3d& third);

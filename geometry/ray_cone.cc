@@ -33,8 +33,8 @@ Eigen::VectorXd AffineMinimizer(const std::vector<Eigen::Vector3d>& corral) {
   return weights.head(n);
 }
 
-// Wolfe (1976), "Finding the nearest point in a polytope". The hull's point nearest to the origin is
-// a convex combination of at most four rays, the corral.
+// Wolfe (1976), "Finding the nearest point in a polytope". The hull's point nearest to the origin
+// is a convex combination of at most four rays, the corral.
 Eigen::Vector3d NearestPointOfHull(absl::Span<const Eigen::Vector3d> unit_rays) {
   constexpr int kMaxRounds = 200;
   constexpr double kTolerance = 1e-12;

@@ -27,17 +27,17 @@ std::optional<Eigen::Vector3d> FeasibleAxis(absl::Span<const Eigen::Vector3d> ra
 // enclosing minimum-area rectangle gives the scale and the orientation, its centroid the origin, as
 // the rectangle's own centre may lie outside the hull and would leave the axes unbounded.
 //
-// Returns normalized_from_ray = N frame_from_ray, det N > 0, or nothing if the hull has no area: all
-// receivers in one plane through the light. `hull` is replaced by its image.
+// Returns normalized_from_ray = N frame_from_ray, det N > 0, or nothing if the hull has no area:
+// all receivers in one plane through the light. `hull` is replaced by its image.
 std::optional<Eigen::Matrix3d> NormalizeRays(const Eigen::Matrix3d& frame_from_ray, Polygon* hull);
 
 // A hull thinner than this share of its length has no area: single-precision depth leaves about as
 // much of a plane that is seen exactly edge-on.
 inline constexpr double kMinHullAspect = 1e-6;
 
-// The axes p = (a, b, 1) with w = p.X >= min_w on every ray of the hull (normalised: X = (x, y, 1)):
-// a polygon around the origin, bounded because the hull has the origin inside. Requires that and
-// min_w < 1.   math.md 1
+// The axes p = (a, b, 1) with w = p.X >= min_w on every ray of the hull (normalised: X = (x, y,
+// 1)): a polygon around the origin, bounded because the hull has the origin inside. Requires that
+// and min_w < 1.   math.md 1
 Polygon PolarPolygon(const Polygon& hull, double min_w);
 
 }  // namespace lightfit

@@ -32,9 +32,9 @@ struct AffineFit {
   std::array<StripContacts, 2> contacts;  // kMinEnergyParallelogram only
 };
 
-// Fits around `hull` (normalised rays (x, y, 1), convex, counter-clockwise) seen along `axis`, which
-// must have w = p.X > 0 on it. `metric_at_axis` is EnergyTensor::AtAxis(axis). Fails when the shape
-// has no area, or the fitter is not in this build.
+// Fits around `hull` (normalised rays (x, y, 1), convex, counter-clockwise) seen along `axis`,
+// which must have w = p.X > 0 on it. `metric_at_axis` is EnergyTensor::AtAxis(axis). Fails when the
+// shape has no area, or the fitter is not in this build.
 absl::StatusOr<AffineFit> FitAffine(const AffineProblem& problem,
                                     const Polygon& hull,
                                     const Eigen::Matrix3d& metric_at_axis,

@@ -56,8 +56,7 @@ std::optional<AffineFit> SampleEvaluator::EvaluateScaled(const Eigen::Vector3d& 
   for (Eigen::Vector2d& vertex : hull) {
     vertex = (ray_from_plane * vertex.homogeneous()).hnormalized();
   }
-  absl::StatusOr<AffineFit> fit =
-      FitAffine(problem(), hull, Eigen::Matrix3d::Identity(), axis);
+  absl::StatusOr<AffineFit> fit = FitAffine(problem(), hull, Eigen::Matrix3d::Identity(), axis);
   if (!fit.ok()) return std::nullopt;
   fit->energy = Energy(fit->map_from_ray, samples_, metric_);
   return *std::move(fit);

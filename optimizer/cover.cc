@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_format.h"
@@ -22,7 +23,8 @@ using Matrix34d = Eigen::Matrix<double, 3, 4>;
 absl::Status SurroundedError(const Light& light) {
   return absl::FailedPreconditionError(absl::StrFormat(
       "light \"%s\" at (%g, %g, %g) hangs among its receivers: no single map has all of them in "
-      "front of it. Render its shadow with a cube map or a dual paraboloid map, split the receivers "
+      "front of it. Render its shadow with a cube map or a dual paraboloid map, split the "
+      "receivers "
       "into several maps, or leave receivers that it does not light out of the read-back",
       light.name,
       light.position.x(),
@@ -37,62 +39,78 @@ absl::Status FlatError(const Light& light) {
       light.name));
 }
 
-// Tells quickly that a point lies inside a convex polygon. The polygon is cut into columns, each
-// with the range of y that is inside over its whole width; points near the edge are not recognised.
-class InsideTest {
+// A convex polygon cut into slabs of equal width across one axis, each with the range of the other
+// coordinate that is inside over its whole width. Points near the edge are not recognised.
+class Slabs {
  public:
-  explicit InsideTest(const Polygon& polygon) {
-    y_low_.fill(std::numeric_limits<double>::infinity());
-    y_high_.fill(-std::numeric_limits<double>::infinity());
+  // Slabs across x for `across` = 0, across y for 1.
+  Slabs(const Polygon& polygon, int across) : across_(across) {
+    low_.fill(std::numeric_limits<double>::infinity());
+    high_.fill(-std::numeric_limits<double>::infinity());
     if (polygon.size() < 3) return;
-    double x_max = polygon[0].x();
-    x_min_ = x_max;
+    begin_ = polygon[0](across);
+    double end = begin_;
     for (const Eigen::Vector2d& vertex : polygon) {
-      x_min_ = std::min(x_min_, vertex.x());
-      x_max = std::max(x_max, vertex.x());
+      begin_ = std::min(begin_, vertex(across));
+      end = std::max(end, vertex(across));
     }
-    if (!(x_max > x_min_)) return;
-    columns_per_x_ = kColumns / (x_max - x_min_);
+    if (!(end > begin_)) return;
+    slabs_per_unit_ = kNumSlabs / (end - begin_);
 
-    // Where each border between columns crosses the lower and the upper chain. As the chains are
-    // convex and concave, the borders' values bound the columns between them.
-    std::array<double, kColumns + 1> lower, upper;
+    // Where the borders between slabs cross the polygon's two chains. As the chains are convex and
+    // concave, the borders' values bound the slabs between them.
+    std::array<double, kNumSlabs + 1> lower, upper;
     lower.fill(std::numeric_limits<double>::infinity());
     upper.fill(-std::numeric_limits<double>::infinity());
     for (size_t i = 0; i < polygon.size(); ++i) {
-      const Eigen::Vector2d& from = polygon[i];
-      const Eigen::Vector2d& to = polygon[i + 1 == polygon.size() ? 0 : i + 1];
-      const bool is_lower = to.x() > from.x();
-      const Eigen::Vector2d& left = is_lower ? from : to;
-      const Eigen::Vector2d& right = is_lower ? to : from;
-      if (!(right.x() > left.x())) continue;
-      const double slope = (right.y() - left.y()) / (right.x() - left.x());
-      const int first = static_cast<int>(std::ceil((left.x() - x_min_) * columns_per_x_));
-      const int last = static_cast<int>((right.x() - x_min_) * columns_per_x_);
-      for (int border = std::max(first, 0); border <= std::min(last, kColumns); ++border) {
-        const double y = left.y() + slope * (x_min_ + border / columns_per_x_ - left.x());
-        (is_lower ? lower : upper)[border] = y;
+      const Eigen::Vector2d* from = &polygon[i];
+      const Eigen::Vector2d* to = &polygon[i + 1 == polygon.size() ? 0 : i + 1];
+      // Counter-clockwise, the lower chain runs towards +x and the left one towards -y.
+      const bool is_lower = ((*to)(across) > (*from)(across)) == (across == 0);
+      if ((*to)(across) < (*from)(across)) std::swap(from, to);
+      const double run = (*to)(across) - (*from)(across);
+      if (!(run > 0.0)) continue;
+      const double slope = ((*to)(1 - across) - (*from)(1 - across)) / run;
+      const int first = static_cast<int>(std::ceil(((*from)(across)-begin_) * slabs_per_unit_));
+      const int last = static_cast<int>(((*to)(across)-begin_) * slabs_per_unit_);
+      for (int border = std::max(first, 0); border <= std::min(last, kNumSlabs); ++border) {
+        (is_lower ? lower : upper)[border] =
+            (*from)(1 - across) + slope * (begin_ + border / slabs_per_unit_ - (*from)(across));
       }
     }
-    for (int column = 0; column < kColumns; ++column) {
-      y_low_[column] = std::max(lower[column], lower[column + 1]);
-      y_high_[column] = std::min(upper[column], upper[column + 1]);
+    for (int slab = 0; slab < kNumSlabs; ++slab) {
+      low_[slab] = std::max(lower[slab], lower[slab + 1]);
+      high_[slab] = std::min(upper[slab], upper[slab + 1]);
     }
   }
 
-  bool operator()(const Eigen::Vector2d& point) const {
-    const double column = (point.x() - x_min_) * columns_per_x_;
-    if (!(column >= 0.0 && column < kColumns)) return false;
-    const int index = static_cast<int>(column);
-    return point.y() > y_low_[index] && point.y() < y_high_[index];
+  bool Contain(const Eigen::Vector2d& point) const {
+    const double slab = (point(across_) - begin_) * slabs_per_unit_;
+    if (!(slab >= 0.0 && slab < kNumSlabs)) return false;
+    const int index = static_cast<int>(slab);
+    return point(1 - across_) > low_[index] && point(1 - across_) < high_[index];
   }
 
  private:
-  static constexpr int kColumns = 64;
+  static constexpr int kNumSlabs = 64;
 
-  double x_min_ = 0.0;
-  double columns_per_x_ = 0.0;
-  std::array<double, kColumns> y_low_, y_high_;
+  int across_;
+  double begin_ = 0.0;
+  double slabs_per_unit_ = 0.0;
+  std::array<double, kNumSlabs> low_, high_;
+};
+
+// Tells quickly that a point lies inside a convex polygon; misses only points close to its edge.
+class InsideTest {
+ public:
+  explicit InsideTest(const Polygon& polygon) : across_x_(polygon, 0), across_y_(polygon, 1) {}
+
+  bool operator()(const Eigen::Vector2d& point) const {
+    return across_x_.Contain(point) || across_y_.Contain(point);
+  }
+
+ private:
+  Slabs across_x_, across_y_;
 };
 
 // The corners of a tile's box of pixel centres and affine depths, as screen points (x, y, d, 1).
@@ -156,7 +174,8 @@ class HullBuilder {
     return (frame_from_screen_ * screen).hnormalized();
   }
 
-  // Looks into a tile unless its box is inside the hull. Also where InsideTest does not recognise it.
+  // Looks into a tile unless its box is inside the hull. Also where InsideTest does not recognise
+  // it.
   void Visit(size_t level, size_t index) {
     const TileGrid& grid = receivers_.tile_grids[level];
     const DepthTile& tile = grid.tiles[index];
@@ -286,10 +305,10 @@ absl::StatusOr<RayCover> CoverReceivers(const Receivers& receivers, const Light&
     cover.depth =
         RangeOverBoxes(*boxes, frame_from_ray.row(2) * ray_from_screen, scale_from_screen);
   } else {
-    cover.depth = RangeOverBoxes(*boxes,
-                                 light.direction.stableNormalized().transpose() *
-                                     receivers.world_from_screen.topRows<3>(),
-                                 scale_from_screen);
+    cover.depth = RangeOverBoxes(
+        *boxes,
+        light.direction.stableNormalized().transpose() * receivers.world_from_screen.topRows<3>(),
+        scale_from_screen);
   }
 
   cover.hull = HullBuilder(receivers, frame_from_ray * ray_from_screen).ExactHull();

@@ -23,8 +23,8 @@ struct RayCover {
   // The receivers' rays as (X'_1, X'_2) / X'_3: their convex hull, the origin strictly inside.
   Polygon hull;
 
-  // Mean of the receivers' unit rays in light space, each tile's by its middle: the axis of a focused
-  // shadow map. For a directional light always (0, 0, 1).
+  // Mean of the receivers' unit rays in light space, each tile's by its middle: the axis of a
+  // focused shadow map. For a directional light always (0, 0, 1).
   Eigen::Vector3d mean_ray = Eigen::Vector3d::UnitZ();
 
   // Bounds over the receivers, world units. Point light: of X'_3, the depth along the third row of

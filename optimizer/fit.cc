@@ -226,8 +226,7 @@ absl::StatusOr<SearchOutcome> SearchL1(const Inputs& inputs,
     if (round == 0) {
       FitOptions focused = options;
       focused.search = Search::kFocused;
-      absl::StatusOr<SearchOutcome> start =
-          SearchAxis(round_inputs, inputs.summary, map, focused);
+      absl::StatusOr<SearchOutcome> start = SearchAxis(round_inputs, inputs.summary, map, focused);
       if (!start.ok()) return start.status();
       energy_start = WeightedSum(
           MetricFootprints(*inputs.samples, metric, start->result.fit.map_from_ray), weights);

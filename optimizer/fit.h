@@ -38,8 +38,9 @@ std::vector<absl::StatusOr<LightMatrix>> FitLights(const Readback& readback,
                                                    const FitOptions& options = {});
 
 // The two halves of FitLight: everything the read-back has to say about this light, in about a
-// kilobyte, and the fit from that alone. Summaries of one light add (Summary::Merge). The L1 metrics
-// need the samples themselves and are refused here; statistics beyond the RMS are left at 0.
+// kilobyte, and the fit from that alone. Summaries of one light add (Summary::Merge). The L1
+// metrics need the samples themselves and are refused here; statistics beyond the RMS are left at
+// 0.
 absl::StatusOr<Summary> Summarize(const Readback& readback,
                                   const Light& light,
                                   const FitOptions& options = {});

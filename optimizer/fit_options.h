@@ -42,18 +42,18 @@ enum class Metric {
 
 // How the axis (the projective part of the matrix) is found.
 enum class Search {
-  kFocused,               // the receivers' mean, no search: the usual focused shadow map
-  kRotationLineSearch,    // Chong & Gortler, Algorithm 1
+  kFocused,                    // the receivers' mean, no search: the usual focused shadow map
+  kRotationLineSearch,         // Chong & Gortler, Algorithm 1
   kRotationLineSearchRefined,  // ... then Ceres
-  kGlobal                 // grid over the polar polygon, then Ceres from the best of it
+  kGlobal                      // grid over the polar polygon, then Ceres from the best of it
 };
 
 // How the map's rectangle is laid around the rays once the axis is known.
 enum class Affine {
-  kMinAreaRectangle,        // Chong & Gortler: the enclosing rectangle of least area
-  kMinAreaRectangleCgal,    // the same from CGAL; UNIMPLEMENTED in builds without it
-  kSkewedRectangle,         // ... with their shear heuristic (Fig. 3 there)
-  kMinEnergyParallelogram   // the enclosing parallelogram of least energy: math.md 5
+  kMinAreaRectangle,       // Chong & Gortler: the enclosing rectangle of least area
+  kMinAreaRectangleCgal,   // the same from CGAL; UNIMPLEMENTED in builds without it
+  kSkewedRectangle,        // ... with their shear heuristic (Fig. 3 there)
+  kMinEnergyParallelogram  // the enclosing parallelogram of least energy: math.md 5
 };
 
 // Which solver refines the axis. Both minimise the same cost, optimizer/refine.h.
@@ -81,11 +81,12 @@ struct FitOptions {
   double margin_percent = 1.0;
   double margin_texels = 0.0;
 
-  // The smallest w = p.X of a ray, as a share of w at the middle of the rays. It keeps the warp, and
-  // with it the depth precision, finite. In (0, 1).
+  // The smallest w = p.X of a ray, as a share of w at the middle of the rays. It keeps the warp,
+  // and with it the depth precision, finite. In (0, 1).
   double min_w = 1e-3;
 
-  // kL2AcrossEdge, kL1AcrossEdge: share of the whole footprint added to that across the edge. (0, 1].
+  // kL2AcrossEdge, kL1AcrossEdge: share of the whole footprint added to that across the edge. (0,
+  // 1].
   double along_edge_share = 0.05;
 
   // kL1, kL1AcrossEdge: rounds of reweighting. >= 1.

@@ -14,9 +14,10 @@
 
 namespace lightfit {
 
-// Footprint of a texel at every pixel (FootprintStatistics has the definition), row-major, read-back
-// pixels per texel; 0 where there is no surface, at discontinuities, and where the surface is
-// edge-on or turned away from the light. `map_from_world` in texels, as LightMatrix::map_from_world.
+// Footprint of a texel at every pixel (FootprintStatistics has the definition), row-major,
+// read-back pixels per texel; 0 where there is no surface, at discontinuities, and where the
+// surface is edge-on or turned away from the light. `map_from_world` in texels, as
+// LightMatrix::map_from_world.
 absl::StatusOr<std::vector<float>> FootprintImage(const Readback& readback,
                                                   const Light& light,
                                                   const Eigen::Matrix4d& map_from_world,

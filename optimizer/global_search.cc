@@ -39,12 +39,14 @@ std::vector<AffineFit> SelectCandidates(std::vector<AffineFit> candidates) {
   });
   std::vector<AffineFit> selected;
   for (const AffineFit& candidate : candidates) {
-    if (selected.size() == kNumRefined || candidate.energy > kRefinedFactor * candidates[0].energy) {
+    if (selected.size() == kNumRefined ||
+        candidate.energy > kRefinedFactor * candidates[0].energy) {
       break;
     }
-    const bool is_apart = std::all_of(selected.begin(), selected.end(), [&](const AffineFit& other) {
-      return (AxisParameters(candidate) - AxisParameters(other)).norm() >= kMinDistance;
-    });
+    const bool is_apart =
+        std::all_of(selected.begin(), selected.end(), [&](const AffineFit& other) {
+          return (AxisParameters(candidate) - AxisParameters(other)).norm() >= kMinDistance;
+        });
     if (is_apart) selected.push_back(candidate);
   }
   return selected;

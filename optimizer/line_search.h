@@ -26,6 +26,10 @@ struct SearchResult {
 // angles and the affine part refitted; the best so far starts the next round. Rotations take place
 // in the ray space of the evaluator's AffineProblem. Angles at which the axis cannot be used are
 // skipped. Requires that `start` can be used.
+//
+// The gradient holds h1, h2 fixed for texel coordinates from 0 to the map's size, so that it
+// depends on which corner of the rectangle is texel (0, 0), which the paper leaves open. It is the
+// corner from which the fitted rectangle's edges run (geometry/enclosing_rectangle.h).
 SearchResult RotationLineSearch(AxisEvaluator& evaluator, const AffineFit& start, int rounds);
 
 }  // namespace lightfit

@@ -50,8 +50,7 @@ std::optional<Point> LineSearch(const ReducedEnergyCost& cost,
   std::optional<Point> best;
   for (int trial = 0; trial < kMaxTrials; ++trial) {
     std::optional<Point> point = PointAt(cost, from.ab + step * direction);
-    if (!point.has_value() ||
-        point->fit.energy > from.fit.energy + kDecreaseShare * step * slope) {
+    if (!point.has_value() || point->fit.energy > from.fit.energy + kDecreaseShare * step * slope) {
       high = step;
     } else {
       const bool risen = point->gradient.dot(direction) >= kSlopeShare * slope;
@@ -84,8 +83,8 @@ Point Descend(const ReducedEnergyCost& cost, double gain_tolerance, Point point)
     if (curvature > 0.0) {  // the BFGS update of the inverse
       const Eigen::Matrix2d project =
           Eigen::Matrix2d::Identity() - moved * turned.transpose() / curvature;
-      inverse_hessian = project * inverse_hessian * project.transpose() +
-                        moved * moved.transpose() / curvature;
+      inverse_hessian =
+          project * inverse_hessian * project.transpose() + moved * moved.transpose() / curvature;
     }
     const double gain = point.fit.energy - next->fit.energy;
     num_small_gains = gain < gain_tolerance * point.fit.energy ? num_small_gains + 1 : 0;

@@ -4,10 +4,10 @@
 // In:   a summary, a fitted map to start from.
 // Out:  a fitted map that is at least as good, with no better one close by.
 //
-// Where the shape's touched rays change, the derivative of E*(p) jumps, and the optimum often lies in
-// such a crease. Least squares stop short there. BFGS with a line search by bisection for the weak
-// Wolfe conditions does not: its curvature estimate grows across a crease until steps run along it
-// (Lewis & Overton 2013, "Nonsmooth optimization via quasi-Newton methods").
+// Where the shape's touched rays change, the derivative of E*(p) jumps, and the optimum often lies
+// in such a crease. Least squares stop short there. BFGS with a line search by bisection for the
+// weak Wolfe conditions does not: its curvature estimate grows across a crease until steps run
+// along it (Lewis & Overton 2013, "Nonsmooth optimization via quasi-Newton methods").
 #pragma once
 
 #include "optimizer/refine.h"

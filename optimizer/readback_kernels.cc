@@ -1,5 +1,6 @@
 #include "optimizer/readback_kernels.h"
 
+#include <algorithm>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
@@ -26,33 +27,39 @@ DepthStatistics ScanDepthSimd(const float* depth,
   const auto background_max = hn::Set(tag, intervals.background_max);
   auto low = hn::Set(tag, std::numeric_limits<float>::max());
   auto high = hn::Set(tag, std::numeric_limits<float>::lowest());
-  DepthStatistics statistics;
+  // Lanes count in single precision, exact up to 2^24 rows.
+  const auto one = hn::Set(tag, 1.0f);
+  auto num_surface = hn::Zero(tag);
+  auto num_background = hn::Zero(tag);
+  const auto accumulate = [&](hn::Vec<decltype(tag)> value) HWY_ATTR {
+    const auto surface = hn::And(hn::Gt(value, surface_min), hn::Lt(value, surface_max));
+    const auto background = hn::And(hn::Ge(value, background_min), hn::Le(value, background_max));
+    low = hn::IfThenElse(surface, hn::Min(low, value), low);
+    high = hn::IfThenElse(surface, hn::Max(high, value), high);
+    num_surface = hn::Add(num_surface, hn::IfThenElseZero(surface, one));
+    num_background = hn::Add(num_background, hn::IfThenElseZero(background, one));
+  };
+  const size_t whole = columns / lanes * lanes;
   for (size_t y = 0; y < rows; ++y, depth += stride) {
-    for (size_t x = 0; x < columns; x += lanes) {
-      const auto inside = hn::FirstN(tag, columns - x);
-      // Lanes past the end read as 0 and are masked out of both counts.
-      const auto value = columns - x >= lanes ? hn::LoadU(tag, depth + x)
-                                              : hn::MaskedLoad(inside, tag, depth + x);
-      const auto surface = hn::And(hn::And(hn::Gt(value, surface_min), hn::Lt(value, surface_max)),
-                                   inside);
-      const auto background = hn::And(
-          hn::And(hn::Ge(value, background_min), hn::Le(value, background_max)), inside);
-      low = hn::IfThenElse(surface, hn::Min(low, value), low);
-      high = hn::IfThenElse(surface, hn::Max(high, value), high);
-      statistics.num_surface += static_cast<int>(hn::CountTrue(tag, surface));
-      statistics.num_background += static_cast<int>(hn::CountTrue(tag, background));
-    }
+    for (size_t x = 0; x < whole; x += lanes) accumulate(hn::LoadU(tag, depth + x));
+    if (whole == columns) continue;
+    // The last few values, padded with NaN, which is neither surface nor background. (A masked load
+    // would read past the end where the processor has none.)
+    HWY_ALIGN float padded[16];
+    std::fill(padded, padded + 16, std::numeric_limits<float>::quiet_NaN());
+    std::copy(depth + whole, depth + columns, padded);
+    accumulate(hn::Load(tag, padded));
   }
+  DepthStatistics statistics;
+  statistics.num_surface = static_cast<int>(hn::GetLane(hn::SumOfLanes(tag, num_surface)));
+  statistics.num_background = static_cast<int>(hn::GetLane(hn::SumOfLanes(tag, num_background)));
   statistics.min = hn::GetLane(hn::MinOfLanes(tag, low));
   statistics.max = hn::GetLane(hn::MaxOfLanes(tag, high));
   return statistics;
 }
 
-size_t ScanBoundarySimd(const uint32_t* row,
-                        size_t stride,
-                        size_t width,
-                        uint32_t mask,
-                        int32_t* columns) {
+size_t ScanBoundarySimd(
+    const uint32_t* row, size_t stride, size_t width, uint32_t mask, int32_t* columns) {
   const hn::CappedTag<uint32_t, 16> tag;
   const size_t lanes = hn::Lanes(tag);
   const auto mask_vector = hn::Set(tag, mask);
@@ -101,11 +108,8 @@ DepthStatistics ScanDepth(const float* depth,
   return HWY_DYNAMIC_DISPATCH(ScanDepthSimd)(depth, stride, columns, rows, intervals);
 }
 
-size_t ScanBoundary(const uint32_t* row,
-                    size_t stride,
-                    size_t width,
-                    uint32_t mask,
-                    int32_t* columns) {
+size_t ScanBoundary(
+    const uint32_t* row, size_t stride, size_t width, uint32_t mask, int32_t* columns) {
   return HWY_DYNAMIC_DISPATCH(ScanBoundarySimd)(row, stride, width, mask, columns);
 }
 

@@ -32,10 +32,7 @@ DepthStatistics ScanDepth(const float* depth,
 // Columns x of 1 ... width - 2 at which a bit of `mask` differs from the neighbour's to the left,
 // right, above or below. `row` points at the first word of the row; the rows above and below are
 // `stride` words away. Writes the columns to `columns` (room for width) in order, returns how many.
-size_t ScanBoundary(const uint32_t* row,
-                    size_t stride,
-                    size_t width,
-                    uint32_t mask,
-                    int32_t* columns);
+size_t ScanBoundary(
+    const uint32_t* row, size_t stride, size_t width, uint32_t mask, int32_t* columns);
 
 }  // namespace lightfit::internal

@@ -30,7 +30,8 @@ TileGrid MergeTiles(const TileGrid& fine) {
       const int last_row = std::min(row + kSide, fine.rows) - 1;
       const int last_column = std::min(column + kSide, fine.columns) - 1;
       DepthTile merged = fine.tiles[static_cast<size_t>(row) * fine.columns + column];
-      const DepthTile& last = fine.tiles[static_cast<size_t>(last_row) * fine.columns + last_column];
+      const DepthTile& last =
+          fine.tiles[static_cast<size_t>(last_row) * fine.columns + last_column];
       merged.x_end = last.x_end;
       merged.y_end = last.y_end;
       merged.num_receivers = 0;
@@ -86,7 +87,8 @@ absl::Status NoReceiversError(const Readback& readback, int64_t num_invalid, int
         DepthKindName(readback.depth_kind)));
   }
   return absl::InvalidArgumentError(absl::StrFormat(
-      "readback.depth: no surface; %d of %d pixels are NaN, negative or out of range for depth kind "
+      "readback.depth: no surface; %d of %d pixels are NaN, negative or out of range for depth "
+      "kind "
       "%s (the first value is %g). Is this the depth channel, and is its depth kind right?",
       num_invalid,
       num_pixels,
@@ -141,8 +143,7 @@ Eigen::Vector3d SurfaceNormal(const Eigen::Matrix4d& screen_from_world,
       gradient.d_y,
       -1.0,
       gradient.d - gradient.d_x * (x + 0.5) - gradient.d_y * (y + 0.5));
-  const Eigen::Vector3d normal =
-      screen_from_world.leftCols<3>().transpose() * plane_in_screen;
+  const Eigen::Vector3d normal = screen_from_world.leftCols<3>().transpose() * plane_in_screen;
   return (orthographic ? 1.0 : -1.0) * normal.normalized();
 }
 
@@ -163,8 +164,8 @@ absl::StatusOr<Receivers> FindReceivers(const Readback& readback,
   finest.tiles.reserve(static_cast<size_t>(finest.columns) * finest.rows);
   for (int y = 0; y < height; y += tile_size) {
     for (int x = 0; x < width; x += tile_size) {
-      DepthTile tile = {x, y, std::min(x + tile_size, width), std::min(y + tile_size, height),
-                        0.0, 0.0, 0};
+      DepthTile tile = {
+          x, y, std::min(x + tile_size, width), std::min(y + tile_size, height), 0.0, 0.0, 0};
       const internal::DepthStatistics statistics =
           internal::ScanDepth(readback.depth.data() + static_cast<size_t>(y) * width + x,
                               width,
@@ -228,10 +229,10 @@ absl::StatusOr<Receivers> FindReceivers(const Readback& readback,
           receivers.world_from_screen * Eigen::Vector4d(x + 0.5, y + 0.5, gradient.d, 1.0);
       pixel.position = position.head<3>() / position.w();
       pixel.normal = SurfaceNormal(screen_from_world, readback.camera.orthographic, x, y, gradient);
-      const Eigen::Vector3d to_eye =
-          readback.camera.orthographic ? Eigen::Vector3d(-eye) : Eigen::Vector3d(eye - pixel.position);
-      pixel.edge_on_to_eye =
-          !(pixel.normal.dot(to_eye) >= options.min_cos_eye * to_eye.norm());
+      const Eigen::Vector3d to_eye = readback.camera.orthographic
+                                         ? Eigen::Vector3d(-eye)
+                                         : Eigen::Vector3d(eye - pixel.position);
+      pixel.edge_on_to_eye = !(pixel.normal.dot(to_eye) >= options.min_cos_eye * to_eye.norm());
       receivers.boundary.push_back(pixel);
     }
   }

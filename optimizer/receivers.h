@@ -20,8 +20,8 @@
 namespace lightfit {
 
 // A rectangle of pixels, begin included, end excluded, and the range of affine depth of its
-// surfaces, if it has any. As rays are linear in (x, y, d, 1), those of all its surfaces lie in the hull of
-// the rays at the eight corners of the box.   math.md 2
+// surfaces, if it has any. As rays are linear in (x, y, d, 1), those of all its surfaces lie in the
+// hull of the rays at the eight corners of the box.   math.md 2
 struct DepthTile {
   int x_begin, y_begin, x_end, y_end;
   double d_min, d_max;
@@ -60,7 +60,8 @@ struct Receivers {
   // Finest first; a tile of each further grid is made of kTilesPerSide^2 tiles of the one before.
   std::vector<TileGrid> tile_grids;
   std::vector<BoundaryPixel> boundary;  // in pixel order
-  std::array<SampleCounts, kMaxLights> counts;  // by shadow bit; used, facing_away, edge_on are 0 yet
+  std::array<SampleCounts, kMaxLights>
+      counts;  // by shadow bit; used, facing_away, edge_on are 0 yet
 
   static constexpr int kTilesPerSide = 4;
 

@@ -20,8 +20,8 @@ constexpr int kMaxIterations = 8;
 constexpr double kUnusableResidual = 1e3;
 
 // Derivative of a row h over p, 3x3, from the rays that its strip touches: each gives one equation
-// h.X = t p.X with t the texel coordinate of that side. A strip that touches only two rays keeps its
-// third degree of freedom, the turn, which does not matter at an optimum (envelope theorem).
+// h.X = t p.X with t the texel coordinate of that side. A strip that touches only two rays keeps
+// its third degree of freedom, the turn, which does not matter at an optimum (envelope theorem).
 Eigen::Matrix3d RowDerivative(const StripContacts& contacts,
                               const Polygon& hull,
                               const InnerInterval& texels) {
@@ -127,8 +127,9 @@ Eigen::Vector2d ReducedEnergyCost::GradientAt(const AffineFit& fit) const {
     for (int k = 0; k < 2; ++k) {
       const std::optional<AffineFit> ahead = FitAt(ab + kStep * Eigen::Vector2d::Unit(k));
       const std::optional<AffineFit> behind = FitAt(ab - kStep * Eigen::Vector2d::Unit(k));
-      gradient(k) = ((ahead ? ahead->energy : fit.energy) - (behind ? behind->energy : fit.energy)) /
-                    (kStep * std::max(1, static_cast<int>(ahead.has_value()) + behind.has_value()));
+      gradient(k) =
+          ((ahead ? ahead->energy : fit.energy) - (behind ? behind->energy : fit.energy)) /
+          (kStep * std::max(1, static_cast<int>(ahead.has_value()) + behind.has_value()));
     }
     return gradient;
   }

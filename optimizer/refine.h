@@ -4,12 +4,12 @@
 // In:   a summary, a fitted map to start from.
 // Out:  a fitted map that is at least as good.   math.md 4 and 6
 //
-// The unknowns are (a, b), the axis p = (a, b, 1) in normalised rays. The cost is the reduced energy
-// E*(p): the least energy of an enclosing shape at p, as 18 residuals L'z1, L'z2 with
-// z_i = p (x) r_i and Q = L L' (EnergyTensor::AsQuadraticForm), however many samples there are.
-// Between changes of the rays that the shape touches E* is smooth. There the touched rays hold the
-// rows h1, h2 as functions of p, and by the envelope theorem the derivative of E* is that of the
-// energy with the touched rays held fixed.
+// The unknowns are (a, b), the axis p = (a, b, 1) in normalised rays. The cost is the reduced
+// energy E*(p): the least energy of an enclosing shape at p, as 18 residuals L'z1, L'z2 with z_i =
+// p (x) r_i and Q = L L' (EnergyTensor::AsQuadraticForm), however many samples there are. Between
+// changes of the rays that the shape touches E* is smooth. There the touched rays hold the rows h1,
+// h2 as functions of p, and by the envelope theorem the derivative of E* is that of the energy with
+// the touched rays held fixed.
 #pragma once
 
 #include <Eigen/Core>

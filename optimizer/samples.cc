@@ -57,8 +57,7 @@ Samples SelectSamples(const Receivers& receivers,
   const Eigen::Vector3d towards_sun = -light.direction.stableNormalized();
 
   Samples samples;
-  samples.ray_from_screen =
-      normalized_from_ray * RayFromWorld(light) * receivers.world_from_screen;
+  samples.ray_from_screen = normalized_from_ray * RayFromWorld(light) * receivers.world_from_screen;
   samples.counts = receivers.counts[light.shadow_bit];
   for (auto* array : {&samples.x, &samples.y, &samples.d, &samples.d_x, &samples.d_y}) {
     array->reserve(samples.counts.candidates);

@@ -16,10 +16,10 @@ namespace lightfit {
 
 // One sample in full: the reference form.   math.md (1) and (11)
 struct Sample {
-  Eigen::Vector3d X;               // ray, along the light's rays
-  Eigen::Matrix<double, 2, 3> D;   // d(screen)/d(ray), pixels per unit of ray; D X = 0
+  Eigen::Vector3d X;              // ray, along the light's rays
+  Eigen::Matrix<double, 2, 3> D;  // d(screen)/d(ray), pixels per unit of ray; D X = 0
   double weight;
-  Eigen::Vector2d edge_normal;     // of the shadow's edge on the screen, unit, or 0 if not known
+  Eigen::Vector2d edge_normal;  // of the shadow's edge on the screen, unit, or 0 if not known
 };
 
 struct Samples {

@@ -58,7 +58,9 @@ struct Summary {
 
 // One vectorised pass over the samples, whose rays must be in the cover's coordinates. The result
 // does not depend on the processor's vector width.
-Summary SummarizeSamples(const Samples& samples, const RayCover& cover, const MetricWeights& metric);
+Summary SummarizeSamples(const Samples& samples,
+                         const RayCover& cover,
+                         const MetricWeights& metric);
 
 // The summary of both sets of samples together, for one light: tiles, frames, machines.
 // InvalidArgument if the metrics differ, FailedPrecondition if no map covers both.

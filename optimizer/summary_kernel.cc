@@ -115,8 +115,7 @@ void AccumulateSimd(const double* const* arrays,
   const size_t lanes = hn::Lanes(Tag());
   for (size_t i = 0; i < count; i += LIGHTFIT_SUMMARY_LANES) {
     for (size_t lane = 0; lane < LIGHTFIT_SUMMARY_LANES; lane += lanes) {
-      AccumulateLanes(
-          arrays, matrix, edge_normal_x, edge_normal_y, metric, i + lane, sums + lane);
+      AccumulateLanes(arrays, matrix, edge_normal_x, edge_normal_y, metric, i + lane, sums + lane);
     }
   }
 }

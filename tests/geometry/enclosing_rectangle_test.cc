@@ -113,7 +113,9 @@ TEST(MinAreaRectangle, PolygonWithoutAreaGivesRectangleWithoutArea) {
       }
     }
     const absl::StatusOr<Parallelogram> from_cgal = MinAreaRectangleCgal(polygon);
-    if (from_cgal.ok()) EXPECT_EQ(Area(*from_cgal), 0.0);
+    if (from_cgal.ok()) {
+      EXPECT_EQ(Area(*from_cgal), 0.0);
+    }
   }
 }
 

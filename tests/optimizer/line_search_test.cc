@@ -72,8 +72,12 @@ TEST(RotationLineSearch, SaysWhyItStopped) {
       SummaryEvaluator evaluator(station.summary, station.problem, kMinW);
       const SearchResult result = RotationLineSearch(evaluator, station.Start(evaluator), rounds);
       const bool converged = result.stop_reason == StopReason::kConverged;
-      if (!converged) EXPECT_EQ(result.stop_reason, StopReason::kRoundLimit);
-      if (rounds == 200) EXPECT_TRUE(converged);
+      if (!converged) {
+        EXPECT_EQ(result.stop_reason, StopReason::kRoundLimit);
+      }
+      if (rounds == 200) {
+        EXPECT_TRUE(converged);
+      }
       ++(converged ? num_converged : num_limited);
     }
   }
