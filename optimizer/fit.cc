@@ -13,6 +13,7 @@
 #include "optimizer/axis_evaluator.h"
 #include "optimizer/global_search.h"
 #include "optimizer/line_search.h"
+#include "optimizer/polish.h"
 #include "optimizer/receivers.h"
 #include "optimizer/refine.h"
 
@@ -158,10 +159,15 @@ absl::StatusOr<SearchOutcome> SearchAxis(const Inputs& inputs,
       RefineResult refined =
           RefineAxis(summary, problem, options.min_w, options.refiner, result.fit);
       refine_evaluations = refined.evaluations;
-      result.fit = refined.fit;
-      result.stop_reason = StopReason::kConverged;
       result.trace.push_back(
           {"refine", evaluator->num_evaluations() + refine_evaluations, refined.fit.energy});
+      const RefineResult polished =
+          PolishAxis(summary, problem, options.min_w, Polish::kThorough, refined.fit);
+      refine_evaluations += polished.evaluations;
+      result.trace.push_back(
+          {"polish", evaluator->num_evaluations() + refine_evaluations, polished.fit.energy});
+      result.fit = polished.fit;
+      result.stop_reason = StopReason::kConverged;
       outcome.solver_report = std::move(refined.report);
       break;
     }

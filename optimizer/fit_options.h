@@ -44,8 +44,8 @@ enum class Metric {
 enum class Search {
   kFocused,                    // the receivers' mean, no search: the usual focused shadow map
   kRotationLineSearch,         // Chong & Gortler, Algorithm 1
-  kRotationLineSearchRefined,  // ... then Ceres
-  kGlobal                      // grid over the polar polygon, then Ceres from the best of it
+  kRotationLineSearchRefined,  // ... then Ceres and a polish
+  kGlobal  // grid over the polar polygon, then Ceres and a polish from the best of it
 };
 
 // How the map's rectangle is laid around the rays once the axis is known.
