@@ -13,8 +13,10 @@
 
 namespace lightfit {
 
-// Rays within this of a half plane (the sine of the angle left) count as surrounding the light.
-inline constexpr double kMinConeMargin = 1e-3;
+// A cone of rays must leave this much of a half space free on every side (the sine of the angle,
+// about a degree), or its rays count as surrounding the light: a map that covered them would spend
+// nearly all its texels on grazing rays.
+inline constexpr double kMinConeMargin = 0.02;
 
 // A unit vector p with p.X > 0 on every ray, or nothing when there is none by kMinConeMargin
 // (receivers all around a point light). The mean of the unit rays when that has room to spare, else
