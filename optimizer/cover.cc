@@ -4,7 +4,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -12,6 +11,7 @@
 
 #include "absl/strings/str_format.h"
 #include "geometry/convex_hull.h"
+#include "geometry/inside_test.h"
 #include "geometry/ray_cone.h"
 
 namespace lightfit {
@@ -38,80 +38,6 @@ absl::Status FlatError(const Light& light) {
       "map would have no area. Is the surface edge-on to the light? Then it shows no shadow",
       light.name));
 }
-
-// A convex polygon cut into slabs of equal width across one axis, each with the range of the other
-// coordinate that is inside over its whole width. Points near the edge are not recognised.
-class Slabs {
- public:
-  // Slabs across x for `across` = 0, across y for 1.
-  Slabs(const Polygon& polygon, int across) : across_(across) {
-    low_.fill(std::numeric_limits<double>::infinity());
-    high_.fill(-std::numeric_limits<double>::infinity());
-    if (polygon.size() < 3) return;
-    begin_ = polygon[0](across);
-    double end = begin_;
-    for (const Eigen::Vector2d& vertex : polygon) {
-      begin_ = std::min(begin_, vertex(across));
-      end = std::max(end, vertex(across));
-    }
-    if (!(end > begin_)) return;
-    slabs_per_unit_ = kNumSlabs / (end - begin_);
-
-    // Where the borders between slabs cross the polygon's two chains. As the chains are convex and
-    // concave, the borders' values bound the slabs between them.
-    std::array<double, kNumSlabs + 1> lower, upper;
-    lower.fill(std::numeric_limits<double>::infinity());
-    upper.fill(-std::numeric_limits<double>::infinity());
-    for (size_t i = 0; i < polygon.size(); ++i) {
-      const Eigen::Vector2d* from = &polygon[i];
-      const Eigen::Vector2d* to = &polygon[i + 1 == polygon.size() ? 0 : i + 1];
-      // Counter-clockwise, the lower chain runs towards +x and the left one towards -y.
-      const bool is_lower = ((*to)(across) > (*from)(across)) == (across == 0);
-      if ((*to)(across) < (*from)(across)) std::swap(from, to);
-      const double run = (*to)(across) - (*from)(across);
-      if (!(run > 0.0)) continue;
-      const double slope = ((*to)(1 - across) - (*from)(1 - across)) / run;
-      const int first = static_cast<int>(std::ceil(((*from)(across)-begin_) * slabs_per_unit_));
-      const int last = static_cast<int>(((*to)(across)-begin_) * slabs_per_unit_);
-      for (int border = std::max(first, 0); border <= std::min(last, kNumSlabs); ++border) {
-        (is_lower ? lower : upper)[border] =
-            (*from)(1 - across) + slope * (begin_ + border / slabs_per_unit_ - (*from)(across));
-      }
-    }
-    for (int slab = 0; slab < kNumSlabs; ++slab) {
-      low_[slab] = std::max(lower[slab], lower[slab + 1]);
-      high_[slab] = std::min(upper[slab], upper[slab + 1]);
-    }
-  }
-
-  bool Contain(const Eigen::Vector2d& point) const {
-    const double slab = (point(across_) - begin_) * slabs_per_unit_;
-    if (!(slab >= 0.0 && slab < kNumSlabs)) return false;
-    const int index = static_cast<int>(slab);
-    return point(1 - across_) > low_[index] && point(1 - across_) < high_[index];
-  }
-
- private:
-  static constexpr int kNumSlabs = 64;
-
-  int across_;
-  double begin_ = 0.0;
-  double slabs_per_unit_ = 0.0;
-  std::array<double, kNumSlabs> low_, high_;
-};
-
-// Tells quickly that a point lies inside a convex polygon; misses only points close to its edge.
-class InsideTest {
- public:
-  explicit InsideTest(const Polygon& polygon) : across_x_(polygon, 0), across_y_(polygon, 1) {}
-
-  bool operator()(const Eigen::Vector2d& point) const {
-    return across_x_.Contain(point) || across_y_.Contain(point);
-  }
-
- private:
-  Slabs across_x_, across_y_;
-};
 
 // The corners of a tile's box of pixel centres and affine depths, as screen points (x, y, d, 1).
 std::array<Eigen::Vector4d, 8> Corners(const DepthTile& tile) {

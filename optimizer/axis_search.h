@@ -1,0 +1,43 @@
+// optimizer/axis_search.h
+//
+// The search that FitOptions ask for: which axis, in which metric.
+// In:   one light's summary, and its samples where the search needs them.
+// Out:  the best fitted map, where the search began, the trace.   math.md 4 and 6
+#pragma once
+
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "geometry/clip.h"
+#include "geometry/light.h"
+#include "optimizer/fit_options.h"
+#include "optimizer/line_search.h"
+#include "optimizer/receivers.h"
+#include "optimizer/samples.h"
+#include "optimizer/summary.h"
+
+namespace lightfit {
+
+// What one light's fit works on. `samples` and `receivers` are null when only a summary is known.
+struct SearchInputs {
+  const Light& light;
+  const Summary& summary;
+  const Samples* samples = nullptr;
+  const Receivers* receivers = nullptr;
+};
+
+struct SearchOutcome {
+  SearchResult result;
+  double energy_start = 0.0;
+  int evaluations = 0;
+  std::string solver_report;
+};
+
+// Runs FitOptions::search in FitOptions::metric. The L1 metrics repeat it on reweighted samples.
+// FailedPrecondition when no axis can be used; InvalidArgument when the options need samples and
+// only a summary is known.
+absl::StatusOr<SearchOutcome> SearchAxis(const SearchInputs& inputs,
+                                         MapSize map,
+                                         const FitOptions& options);
+
+}  // namespace lightfit
