@@ -22,7 +22,8 @@ using Matrix34d = Eigen::Matrix<double, 3, 4>;
 
 absl::Status SurroundedError(const Light& light) {
   return absl::FailedPreconditionError(absl::StrFormat(
-      "light \"%s\" at (%g, %g, %g) hangs among its receivers: no single map has all of them in "
+      "light \"%s\": at (%g, %g, %g) it hangs among its receivers: no single map has all of them "
+      "in "
       "front of it. Render its shadow with a cube map or a dual paraboloid map, split the "
       "receivers "
       "into several maps, or leave receivers that it does not light out of the read-back",

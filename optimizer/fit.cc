@@ -203,6 +203,13 @@ absl::StatusOr<LightMatrix> Fit(const Summary& summary,
     return absl::InvalidArgumentError(
         "options.sample_by_sample: a summary has no samples; fit from the read-back (FitLight)");
   }
+  const MetricWeights metric = WeightsOf(options.metric, options.along_edge_share);
+  if (metric.across_edge != summary.metric.across_edge || metric.whole != summary.metric.whole) {
+    return absl::InvalidArgumentError(
+        "options.metric or along_edge_share is not what the samples were summed with: summarise "
+        "and "
+        "fit with the same FitOptions");
+  }
   return FitInputs({light, summary}, map, options);
 }
 

@@ -206,6 +206,17 @@ TEST(Fit, FromTheSummaryEqualsFitLight) {
   }
 }
 
+TEST(Fit, RefusesAMetricThatTheSummaryWasNotSummedWith) {
+  const TestScene scene(1, 6);
+  const auto summary = Summarize(scene.View(), scene.lights[0]);
+  ASSERT_THAT(summary, IsOk());
+  FitOptions across_edge;
+  across_edge.metric = Metric::kL2AcrossEdge;
+  const auto matrix = Fit(*summary, scene.lights[0], kMap, across_edge);
+  EXPECT_EQ(matrix.status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_NE(matrix.status().message().find("options.metric"), absl::string_view::npos);
+}
+
 // math.md (3): energy = 2 used rms^2, with the footprint's definition in light_matrix.h.
 TEST(FitLight, RmsFollowsFromTheEnergy) {
   const TestScene scene(8, 6);
