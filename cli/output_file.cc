@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 #include <system_error>
 
 #include "absl/strings/str_cat.h"
@@ -56,18 +55,6 @@ absl::Status WriteThroughTemporary(const std::string& path,
   }
   std::filesystem::remove(temporary, error);
   return status;
-}
-
-absl::Status WriteTextFile(const std::string& path, absl::string_view text) {
-  return WriteThroughTemporary(path, [&](const std::string& temporary) -> absl::Status {
-    std::ofstream file(temporary, std::ios::binary);
-    file.write(text.data(), static_cast<std::streamsize>(text.size()));
-    file.close();
-    if (!file) {
-      return absl::UnknownError(absl::StrCat("cannot write ", path, "; is the disk full?"));
-    }
-    return absl::OkStatus();
-  });
 }
 
 }  // namespace lightfit

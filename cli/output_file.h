@@ -20,7 +20,4 @@ absl::Status CheckWritable(absl::string_view flag, const std::string& path);
 absl::Status WriteThroughTemporary(const std::string& path,
                                    const std::function<absl::Status(const std::string&)>& write);
 
-// The same for text that is already there.
-absl::Status WriteTextFile(const std::string& path, absl::string_view text);
-
 }  // namespace lightfit

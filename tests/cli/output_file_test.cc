@@ -16,7 +16,12 @@ using ::testing::HasSubstr;
 TEST(OutputFile, ReplacesTheOldFile) {
   const TemporaryFolder folder;
   WriteFile(folder.Path("a"), "old and longer");
-  ASSERT_TRUE(WriteTextFile(folder.Path("a"), "new").ok());
+  const absl::Status status =
+      WriteThroughTemporary(folder.Path("a"), [](const std::string& temporary) {
+        WriteFile(temporary, "new");
+        return absl::OkStatus();
+      });
+  ASSERT_TRUE(status.ok()) << status;
   EXPECT_EQ(ReadFile(folder.Path("a")), "new");
   EXPECT_THAT(folder.Files(), ElementsAre("a"));
 }
@@ -35,7 +40,8 @@ TEST(OutputFile, AFailureLeavesTheOldFileAndNothingElse) {
 }
 
 TEST(OutputFile, AFolderThatRefusesFilesIsAnError) {
-  EXPECT_FALSE(WriteTextFile("/proc/lightfit", "text").ok());
+  const auto write_nothing = [](const std::string&) { return absl::OkStatus(); };
+  EXPECT_FALSE(WriteThroughTemporary("/proc/lightfit", write_nothing).ok());
 }
 
 TEST(OutputFile, ChecksTheFolderBeforehand) {
