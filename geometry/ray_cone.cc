@@ -42,7 +42,7 @@ Eigen::Vector3d NearestPointOfHull(absl::Span<const Eigen::Vector3d> unit_rays) 
   Eigen::VectorXd weights = Eigen::VectorXd::Ones(1);
   Eigen::Vector3d nearest = unit_rays[0];
   for (int round = 0; round < kMaxRounds; ++round) {
-    const Eigen::Vector3d* lowest = nullptr;
+    const Eigen::Vector3d* lowest = &unit_rays[0];
     double lowest_height = std::numeric_limits<double>::infinity();
     for (const Eigen::Vector3d& ray : unit_rays) {
       const double height = nearest.dot(ray);

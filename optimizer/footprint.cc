@@ -77,7 +77,7 @@ FootprintStatistics ComputeFootprintStatistics(const Eigen::Matrix3d& map_from_r
     sum_weight += sample.weight;
   }
   const auto quantile = [&footprints](double share) {
-    const size_t rank = static_cast<size_t>(share * (footprints.size() - 1) + 0.5);
+    const size_t rank = static_cast<size_t>(std::lround(share * (footprints.size() - 1)));
     std::nth_element(footprints.begin(), footprints.begin() + rank, footprints.end());
     return footprints[rank];
   };

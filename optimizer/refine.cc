@@ -102,9 +102,9 @@ Eigen::Matrix<double, 18, 1> ReducedEnergyCost::Residuals(
     const Eigen::Matrix3d& map_from_ray) const {
   const Eigen::Matrix3d R = map_from_ray.inverse();
   Eigen::Matrix<double, 18, 1> residuals;
-  for (int i = 0; i < 2; ++i) {
+  for (Eigen::Index i = 0; i < 2; ++i) {
     Eigen::Matrix<double, 9, 1> z;  // p (x) r_i
-    for (int a = 0; a < 3; ++a) z.segment<3>(3 * a) = map_from_ray(2, a) * R.col(i);
+    for (Eigen::Index a = 0; a < 3; ++a) z.segment<3>(3 * a) = map_from_ray(2, a) * R.col(i);
     residuals.segment<9>(9 * i) = factor_transposed_ * z;
   }
   return residuals;
@@ -124,7 +124,7 @@ Eigen::Vector2d ReducedEnergyCost::GradientAt(const AffineFit& fit) const {
     constexpr double kStep = 1e-5;
     const Eigen::Vector2d ab = AxisParameters(fit);
     Eigen::Vector2d gradient;
-    for (int k = 0; k < 2; ++k) {
+    for (Eigen::Index k = 0; k < 2; ++k) {
       const std::optional<AffineFit> ahead = FitAt(ab + kStep * Eigen::Vector2d::Unit(k));
       const std::optional<AffineFit> behind = FitAt(ab - kStep * Eigen::Vector2d::Unit(k));
       gradient(k) =
@@ -146,15 +146,15 @@ void ReducedEnergyCost::AnalyticJacobian(const AffineFit& fit,
                                          Eigen::Matrix<double, 18, 2>* jacobian) const {
   const std::array<Eigen::Matrix3d, 2> dh_dp = RowDerivatives(fit);
   const Eigen::Matrix3d R = fit.map_from_ray.inverse();
-  for (int k = 0; k < 2; ++k) {
+  for (Eigen::Index k = 0; k < 2; ++k) {
     Eigen::Matrix3d dH;
     dH.row(0) = dh_dp[0].col(k);
     dH.row(1) = dh_dp[1].col(k);
     dH.row(2) = Eigen::RowVector3d::Unit(k);
     const Eigen::Matrix3d dR = -R * dH * R;
-    for (int i = 0; i < 2; ++i) {
+    for (Eigen::Index i = 0; i < 2; ++i) {
       Eigen::Matrix<double, 9, 1> dz;
-      for (int a = 0; a < 3; ++a) {
+      for (Eigen::Index a = 0; a < 3; ++a) {
         dz.segment<3>(3 * a) = dH(2, a) * R.col(i) + fit.map_from_ray(2, a) * dR.col(i);
       }
       jacobian->block<9, 1>(9 * i, k) = factor_transposed_ * dz;
@@ -167,7 +167,7 @@ void ReducedEnergyCost::NumericJacobian(const Eigen::Vector2d& ab,
                                         Eigen::Matrix<double, 18, 2>* jacobian) const {
   constexpr double kStep = 1e-5;
   const Eigen::Matrix<double, 18, 1> here = Residuals(fit.map_from_ray);
-  for (int k = 0; k < 2; ++k) {
+  for (Eigen::Index k = 0; k < 2; ++k) {
     const Eigen::Vector2d step = kStep * Eigen::Vector2d::Unit(k);
     const std::optional<AffineFit> ahead = FitAt(ab + step);
     const std::optional<AffineFit> behind = FitAt(ab - step);

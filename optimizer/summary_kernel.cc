@@ -97,8 +97,8 @@ HWY_INLINE void AccumulateLanes(const double* const* arrays,
   }
   OuterSquare(X, rays);
   for (int k = 0; k < 6; ++k) rays[k] = hn::Mul(rays[k], scale);
-  for (int row = 0; row < 6; ++row) {
-    for (int column = 0; column < 6; ++column) {
+  for (size_t row = 0; row < 6; ++row) {
+    for (size_t column = 0; column < 6; ++column) {
       double* sum = sums + LIGHTFIT_SUMMARY_LANES * (6 * row + column);
       hn::Store(hn::Add(hn::Load(tag, sum), hn::Mul(rays[row], G[column])), tag, sum);
     }
