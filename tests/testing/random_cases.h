@@ -163,6 +163,7 @@ inline PatchCase RandomPatchCase(Random& random, double distance, int num_sample
                                       ? FrameAlong(axis)
                                       : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
     std::vector<Eigen::Vector2d> points;
+    points.reserve(rays.size());
     for (const Eigen::Vector3d& ray : rays) points.push_back((frame * ray).hnormalized());
     result.hull = ConvexHull(points);
     const std::optional<Eigen::Matrix3d> normalized = NormalizeRays(frame, &result.hull);
