@@ -81,7 +81,7 @@ TEST(GlobalSearch, NeverAbovePublishedAndFocused) {
 TEST(GlobalSearch, RefinersEndAtNearlyTheSameEnergy) {
   std::vector<double> differences;
   for (const FitStation& station : FitStations(10, Affine::kMinEnergyParallelogram)) {
-    double energies[2];
+    double energies[2] = {};
     for (const Refiner refiner : {Refiner::kTinySolver, Refiner::kCeres}) {
       SummaryEvaluator evaluator(station.summary, station.problem, kMinW);
       const AffineFit start = station.Start(evaluator);
