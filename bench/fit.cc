@@ -6,15 +6,18 @@
 // Out:  times by Google Benchmark, then tables of ratios of medians within this run.
 //
 //   BM_FitLights/default/<input>/<lights>       the library as it comes
+//   BM_FitLights/squared/<input>/<lights>       ... with squared footprints and all receivers: the
+//                                               same objective as published
 //   BM_FitLights/as_published/<input>/<lights>  Chong & Gortler's Algorithm 1: every candidate
 //                                               projects all receivers and sums all samples
 //   BM_Search/as_published/<input>              its search alone, one light
 //   BM_Search/hull_once/<input>                 ... with the receivers' hull taken once: a stronger
 //                                               baseline
 //   BM_Search/summary/<input>                   ... from the summary
-//   BM_Summarize/<input>                        all that looks at pixels, one light
+//   BM_Summarize/<input>                        all that looks at pixels, one light, squared
 //   BM_ReadOnce/<input>                         a plain sum over the same bytes
 //   BM_FindReceivers, BM_CoverReceivers, BM_SelectSamples, BM_SummarizeSamples: the stages of it
+//   BM_CoverShadowed, BM_EdgeNormals            what the default cover and metric add to them
 //   BM_Fit/tiny_solver, BM_Fit/ceres            from the summary to the matrix
 //
 // --benchmark_filter, --benchmark_out=FILE and the rest work as usual. --slow adds the published
@@ -40,6 +43,7 @@
 #include "bench/medians.h"
 #include "optimizer/axis_evaluator.h"
 #include "optimizer/cover.h"
+#include "optimizer/edge_normals.h"
 #include "optimizer/line_search.h"
 #include "optimizer/receivers.h"
 #include "optimizer/samples.h"
@@ -55,6 +59,16 @@ constexpr int64_t kMaxRepeated = 500'000;
 
 using Body = std::function<void()>;
 
+// The default search on the published method's objective.
+FitOptions Squared() {
+  const FitOptions published = FitOptions::AsPublished();
+  FitOptions options;
+  options.samples = published.samples;
+  options.metric = published.metric;
+  options.cover = published.cover;
+  return options;
+}
+
 benchmark::internal::Benchmark* Register(const std::string& name, int64_t items, Body body) {
   return benchmark::RegisterBenchmark(name.c_str(),
                                       [items, body = std::move(body)](benchmark::State& state) {
@@ -69,6 +83,10 @@ void RegisterFitLights(const FitInput& input, int num_lights, bool slow) {
   const std::string suffix = absl::StrCat(input.name, "/", num_lights);
   Register("BM_FitLights/default/" + suffix, num_lights, [&input, num_lights] {
     benchmark::DoNotOptimize(FitLights(input.input.View(), input.Lights(num_lights), kFitMap));
+  });
+  Register("BM_FitLights/squared/" + suffix, num_lights, [&input, num_lights] {
+    benchmark::DoNotOptimize(
+        FitLights(input.input.View(), input.Lights(num_lights), kFitMap, Squared()));
   });
   const bool is_slow = input.num_pixels() * num_lights > kMaxPublished;
   if (is_slow && !slow) return;
@@ -101,24 +119,39 @@ void RegisterStages(const FitInput& input) {
   const int64_t pixels = input.num_pixels();
   const Light& light = input.input.lights.front();
   const uint32_t mask = uint32_t{1} << light.shadow_bit;
+  const SampleOptions published_samples = Squared().samples;
   Register("BM_ReadOnce/" + input.name, pixels, [&input] { ReadOnce(input.input.View()); });
   Register("BM_Summarize/" + input.name, pixels, [&input, &light] {
-    benchmark::DoNotOptimize(Summarize(input.input.View(), light));
+    benchmark::DoNotOptimize(Summarize(input.input.View(), light, Squared()));
   });
-  Register("BM_FindReceivers/" + input.name, pixels, [&input, mask] {
-    benchmark::DoNotOptimize(FindReceivers(input.input.View(), mask, SampleOptions()));
+  Register("BM_FindReceivers/" + input.name, pixels, [&input, mask, published_samples] {
+    benchmark::DoNotOptimize(FindReceivers(input.input.View(), mask, published_samples));
   });
 
-  const auto receivers =
-      std::make_shared<const Receivers>(*FindReceivers(input.input.View(), mask, SampleOptions()));
-  const auto cover = std::make_shared<const RayCover>(*CoverReceivers(*receivers, light));
+  const auto receivers = std::make_shared<const Receivers>(
+      *FindReceivers(input.input.View(), mask, published_samples));
+  const auto cover =
+      std::make_shared<const RayCover>(*CoverReceivers(*receivers, light, Cover::kReceivers));
   const auto samples = std::make_shared<const Samples>(
       SelectSamples(*receivers, light, cover->normalized_from_ray, /*with_edge_normals=*/false));
   const auto summary =
       std::make_shared<const Summary>(SummarizeSamples(*samples, *cover, MetricWeights()));
   const auto num_samples = static_cast<int64_t>(samples->size());
   Register("BM_CoverReceivers/" + input.name, pixels, [receivers, &light] {
-    benchmark::DoNotOptimize(CoverReceivers(*receivers, light));
+    benchmark::DoNotOptimize(CoverReceivers(*receivers, light, Cover::kReceivers));
+  });
+  Register("BM_CoverShadowed/" + input.name, pixels, [receivers, &light] {
+    benchmark::DoNotOptimize(CoverReceivers(*receivers, light, Cover::kShadowed));
+  });
+  Register("BM_EdgeNormals/" + input.name, num_samples, [receivers, samples, &light] {
+    const EdgeNormals normals(receivers->readback,
+                              receivers->affine_depth,
+                              light.shadow_bit,
+                              receivers->options.edge_window);
+    for (size_t i = 0; i < samples->size(); ++i) {
+      benchmark::DoNotOptimize(
+          normals.At(static_cast<int>(samples->x[i]), static_cast<int>(samples->y[i])));
+    }
   });
   Register("BM_SelectSamples/" + input.name, num_samples, [receivers, cover, &light] {
     benchmark::DoNotOptimize(SelectSamples(*receivers, light, cover->normalized_from_ray, false));
@@ -127,7 +160,7 @@ void RegisterStages(const FitInput& input) {
     benchmark::DoNotOptimize(SummarizeSamples(*samples, *cover, MetricWeights()));
   });
   for (const Refiner refiner : {Refiner::kTinySolver, Refiner::kCeres}) {
-    FitOptions options;
+    FitOptions options = Squared();
     options.refiner = refiner;
     const char* variant = refiner == Refiner::kCeres ? "ceres/" : "tiny_solver/";
     Register(absl::StrCat("BM_Fit/", variant, input.name), 1, [summary, &light, options] {

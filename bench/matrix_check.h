@@ -1,7 +1,7 @@
 // bench/matrix_check.h
 //
 // Judges a finished matrix by the read-back alone, whatever the fit says about it.
-// In:   a read-back, a light, map_from_world.
+// In:   a read-back, a light, which samples count, map_from_world.
 // Out:  its energy, sample by sample, and how far receivers stick out of the map.
 #pragma once
 
@@ -11,6 +11,7 @@
 #include "absl/status/statusor.h"
 #include "geometry/clip.h"
 #include "geometry/light.h"
+#include "optimizer/fit_options.h"
 #include "optimizer/readback.h"
 #include "optimizer/samples.h"
 
@@ -23,7 +24,9 @@ struct MatrixQuality {
 
 class MatrixCheck {
  public:
-  static absl::StatusOr<MatrixCheck> Create(const Readback& readback, const Light& light);
+  static absl::StatusOr<MatrixCheck> Create(const Readback& readback,
+                                            const Light& light,
+                                            const SampleOptions& options);
 
   MatrixQuality Measure(const Eigen::Matrix4d& map_from_world, MapSize map) const;
 

@@ -15,6 +15,9 @@
 //         outside_texels   how far the receiver furthest outside lies from the map; 0 is none
 //         evaluations      matrices evaluated by the search
 //
+// All methods minimise the same: squared footprints over the published method's samples, with all
+// receivers in the map. "default" is the default search on that, not the default metric and cover.
+//
 // With --check the exit status is 1 when the default is more than 0.5 % above brute force, above
 // any other method, leaves a receiver outside the map, or reports a wrong energy, on any light.
 #include <unistd.h>

@@ -9,16 +9,25 @@
 
 namespace lightfit {
 
+FitOptions QualityObjective() {
+  const FitOptions published = FitOptions::AsPublished();
+  FitOptions options;
+  options.samples = published.samples;
+  options.metric = published.metric;
+  options.cover = published.cover;
+  return options;
+}
+
 std::vector<Method> QualityMethods() {
-  FitOptions line_search;
+  FitOptions line_search = QualityObjective();
   line_search.search = Search::kRotationLineSearch;
-  FitOptions refined;
+  FitOptions refined = QualityObjective();
   refined.search = Search::kRotationLineSearchRefined;
-  FitOptions focused;
+  FitOptions focused = QualityObjective();
   focused.search = Search::kFocused;
   focused.affine = Affine::kMinAreaRectangle;
   focused.ray_space = RaySpace::kLightSpace;
-  return {{"default", FitOptions()},
+  return {{"default", QualityObjective()},
           {"line_search_refined", refined},
           {"line_search", line_search},
           {"as_published", FitOptions::AsPublished()},
@@ -37,13 +46,14 @@ absl::StatusOr<QualityCase> MeasureQuality(const std::string& input,
                                            const Light& light,
                                            MapSize map,
                                            const BruteForceOptions& brute_force) {
-  absl::StatusOr<Summary> summary = Summarize(readback, light);
+  absl::StatusOr<Summary> summary = Summarize(readback, light, QualityObjective());
   if (!summary.ok()) return summary.status();
-  if (summary->counts.used < FitOptions().samples.min_samples) {
+  if (summary->counts.used < QualityObjective().samples.min_samples) {
     return absl::FailedPreconditionError(
         absl::StrCat("light \"", light.name, "\": ", summary->counts.used, " samples"));
   }
-  absl::StatusOr<MatrixCheck> check = MatrixCheck::Create(readback, light);
+  absl::StatusOr<MatrixCheck> check =
+      MatrixCheck::Create(readback, light, QualityObjective().samples);
   if (!check.ok()) return check.status();
 
   QualityCase result;
@@ -64,7 +74,7 @@ absl::StatusOr<QualityCase> MeasureQuality(const std::string& input,
         {method.name, quality.energy, matrix->energy, quality.outside_texels, matrix->evaluations});
     if (method.name == "default") energy_start = matrix->energy_start;
   }
-  const double least = BruteForceFit(*summary, map, FitOptions(), brute_force).energy;
+  const double least = BruteForceFit(*summary, map, QualityObjective(), brute_force).energy;
   result.results.push_back({"start", energy_start, energy_start});
   result.results.push_back({"brute_force", least, least});
   return result;

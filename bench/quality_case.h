@@ -22,7 +22,13 @@ struct Method {
   FitOptions options;
 };
 
-// default, line_search_refined, line_search, as_published, focused: in this order.
+// What is the same for all methods: Chong & Gortler's samples, squared footprints, all receivers in
+// the map. That is what brute force minimises too.
+FitOptions QualityObjective();
+
+// default, line_search_refined, line_search, as_published, focused: in this order. "default" is the
+// search that FitOptions choose by default, on QualityObjective() instead of the default metric and
+// cover.
 std::vector<Method> QualityMethods();
 
 struct MethodResult {

@@ -1,12 +1,13 @@
 // geometry/homography.h
 //
-// From the homography of a map to the 4x4 matrix that a renderer multiplies by.
-// In:   map_from_ray (H, 3x3), ray_from_world (3x4), the depth row.
-// Out:  map_from_world, (u w, v w, z w, w).   math.md 1 and 8
+// Between the homography of a map and the 4x4 matrix that a renderer multiplies by.
+// In:   map_from_ray (H, 3x3), ray_from_world (3x4), the depth row; or somebody's 4x4.
+// Out:  map_from_world, (u w, v w, z w, w); or the H that is in it.   math.md 1 and 8
 #pragma once
 
 #include <Eigen/Core>
 
+#include "absl/status/statusor.h"
 #include "geometry/light.h"
 
 namespace lightfit {
@@ -31,5 +32,12 @@ Eigen::Matrix4d MapFromWorld(const Eigen::Matrix3d& map_from_ray,
                              const Light& light,
                              DepthRange range,
                              double w_min);
+
+// H of a matrix that somebody else made: rows 1, 2 and 4 are H ray_from_world, with
+// RayFromWorld(light). The sign is that with w > 0 in front. InvalidArgument when the matrix is not
+// finite or singular, or its rays do not all leave the light (its centre of projection is
+// elsewhere).
+absl::StatusOr<Eigen::Matrix3d> MapFromRay(const Eigen::Matrix4d& map_from_world,
+                                           const Light& light);
 
 }  // namespace lightfit

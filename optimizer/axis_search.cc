@@ -19,19 +19,21 @@ namespace lightfit {
 namespace {
 
 // Keeps reweighted samples of vanishing footprint from weighing everything: a share of the mean.
-constexpr double kReweightingFloor = 1e-3;
-
-bool IsL1(Metric metric) { return metric == Metric::kL1 || metric == Metric::kL1AcrossEdge; }
+constexpr double kReweightingFloor = 0.02;
 
 // Rays of all receivers in normalised coordinates, for SampleEvaluator.
 std::vector<Eigen::Vector3d> ReceiverRays(const Receivers& receivers,
                                           const Eigen::Matrix<double, 3, 4>& ray_from_screen) {
   std::vector<Eigen::Vector3d> rays;
-  for (const DepthTile& tile : receivers.tile_grids[0].tiles) {
-    if (tile.num_receivers == 0) continue;
-    receivers.ForEachReceiver(tile, [&](int x, int y, double d) {
-      rays.push_back(ray_from_screen * Eigen::Vector4d(x + 0.5, y + 0.5, d, 1.0));
-    });
+  for (const DepthTile& tile : receivers.tiles.grids[0].tiles) {
+    if (tile.num_surfaces == 0) continue;
+    ForEachSurface(receivers.readback,
+                   receivers.affine_depth,
+                   receivers.tiles.filter,
+                   tile,
+                   [&](int x, int y, double d) {
+                     rays.push_back(ray_from_screen * Eigen::Vector4d(x + 0.5, y + 0.5, d, 1.0));
+                   });
   }
   return rays;
 }
@@ -143,65 +145,82 @@ std::vector<double> MetricFootprints(const Samples& samples,
   return footprints;
 }
 
-double WeightedSum(const std::vector<double>& values, const std::vector<double>& weights) {
-  double sum = 0.0;
-  for (size_t i = 0; i < values.size(); ++i) sum += weights[i] * values[i];
-  return sum;
+// Where the search began, judged by the sum of footprints.
+absl::StatusOr<SearchOutcome> StartOfL1(const SearchInputs& inputs,
+                                        MapSize map,
+                                        const FitOptions& options) {
+  FitOptions focused = options;
+  focused.search = Search::kFocused;
+  absl::StatusOr<SearchOutcome> start = SearchSquares(inputs, inputs.summary, map, focused);
+  if (!start.ok()) return start.status();
+  AffineFit& fit = start->result.fit;
+  fit.energy = WeightsForL1(*inputs.samples, inputs.summary.metric, fit.map_from_ray).footprint_sum;
+  start->energy_start = fit.energy;
+  start->result.trace = {{"start", start->evaluations, fit.energy}};
+  return start;
 }
 
 // L1 by iteratively reweighted least squares: a sample's squared footprint weighs as much as one
-// over its footprint in the round before, so that the weighted squares sum to the footprints.
+// over its footprint in the round before, so that the weighted squares sum to the footprints. The
+// first round searches as the options say; the axis then moves little, so that the global and the
+// refined search only polish it in the rounds that follow.
 absl::StatusOr<SearchOutcome> SearchL1(const SearchInputs& inputs,
                                        MapSize map,
                                        const FitOptions& options) {
-  if (inputs.samples == nullptr) {
-    return absl::InvalidArgumentError(
-        "options.metric: the L1 metrics need the samples; fit from the read-back (FitLight), or "
-        "choose kL2 or kL2AcrossEdge");
-  }
-  const MetricWeights metric = inputs.summary.metric;
-  const std::vector<double>& weights = inputs.samples->weight;
+  const bool polishes =
+      options.search == Search::kGlobal || options.search == Search::kRotationLineSearchRefined;
+  absl::StatusOr<SearchOutcome> best = StartOfL1(inputs, map, options);
+  if (!best.ok()) return best.status();
+  std::vector<TraceStep> trace = best->result.trace;
+  const double energy_start = best->energy_start;
+  int evaluations = best->evaluations;
   Samples reweighted = *inputs.samples;
-  std::optional<SearchOutcome> best;
-  std::vector<TraceStep> trace;
-  double energy_start = 0.0;
-  int evaluations = 0;
+  SearchOutcome current = *best;
   for (int round = 0; round < options.reweighting_rounds; ++round) {
-    const Summary summary = SummarizeSamples(reweighted, inputs.summary.cover, metric);
-    SearchInputs round_inputs = {inputs.light, summary, &reweighted, inputs.receivers};
-    absl::StatusOr<SearchOutcome> outcome = SearchSquares(round_inputs, summary, map, options);
-    if (!outcome.ok()) return outcome.status();
-    evaluations += outcome->evaluations;
-    if (round == 0) {
-      FitOptions focused = options;
-      focused.search = Search::kFocused;
-      absl::StatusOr<SearchOutcome> start =
-          SearchSquares(round_inputs, inputs.summary, map, focused);
-      if (!start.ok()) return start.status();
-      energy_start = WeightedSum(
-          MetricFootprints(*inputs.samples, metric, start->result.fit.map_from_ray), weights);
-      trace.push_back({"start", 1, energy_start});
-      start->result.fit.energy = energy_start;
-      best = *std::move(start);
+    const Summary summary =
+        SummarizeSamples(reweighted, inputs.summary.cover, inputs.summary.metric);
+    if (round > 0 && polishes) {
+      const AffineProblem problem = MakeAffineProblem(summary, map, options);
+      SummaryEvaluator evaluator(summary, problem, options.min_w);
+      const std::optional<AffineFit> start =
+          evaluator.Evaluate(current.result.fit.map_from_ray.row(2).transpose());
+      if (!start.has_value()) break;
+      const bool is_last = round + 1 == options.reweighting_rounds;
+      RefineResult polished = PolishAxis(
+          summary, problem, options.min_w, is_last ? Polish::kThorough : Polish::kQuick, *start);
+      current.result.fit = polished.fit;
+      evaluations += 1 + polished.evaluations;
+    } else {
+      const SearchInputs round_inputs = {inputs.light, summary, &reweighted, inputs.receivers};
+      absl::StatusOr<SearchOutcome> outcome = SearchSquares(round_inputs, summary, map, options);
+      if (!outcome.ok()) return outcome.status();
+      current = *std::move(outcome);
+      evaluations += current.evaluations;
     }
-    const std::vector<double> footprints =
-        MetricFootprints(*inputs.samples, metric, outcome->result.fit.map_from_ray);
-    const double energy = WeightedSum(footprints, weights);
-    trace.push_back({"reweight", evaluations, energy});
-    if (energy < best->result.fit.energy) {
-      best = *std::move(outcome);
-      best->result.fit.energy = energy;
+    L1Weights l1 =
+        WeightsForL1(*inputs.samples, inputs.summary.metric, current.result.fit.map_from_ray);
+    trace.push_back({round == 0 ? "search" : "reweight", evaluations, l1.footprint_sum});
+    if (l1.footprint_sum < best->result.fit.energy) {
+      best = current;
+      best->result.fit.energy = l1.footprint_sum;
     }
-    const double floor =
-        kReweightingFloor * WeightedSum(footprints, weights) / inputs.summary.total_weight;
-    for (size_t i = 0; i < footprints.size(); ++i) {
-      reweighted.weight[i] = weights[i] / std::max(footprints[i], floor);
-    }
+    reweighted.weight = std::move(l1.weights);
   }
   best->energy_start = energy_start;
   best->evaluations = evaluations;
   best->result.trace = std::move(trace);
-  return *std::move(best);
+  return best;
+}
+
+// The energies of a search on weighted squares as bounds of the sum of footprints.
+SearchOutcome AsFootprintSums(SearchOutcome outcome, double footprint_sum) {
+  const auto convert = [footprint_sum](double* energy) {
+    *energy = std::sqrt(*energy * footprint_sum);
+  };
+  convert(&outcome.result.fit.energy);
+  convert(&outcome.energy_start);
+  for (TraceStep& step : outcome.result.trace) convert(&step.energy);
+  return outcome;
 }
 
 }  // namespace
@@ -209,9 +228,30 @@ absl::StatusOr<SearchOutcome> SearchL1(const SearchInputs& inputs,
 absl::StatusOr<SearchOutcome> SearchAxis(const SearchInputs& inputs,
                                          MapSize map,
                                          const FitOptions& options) {
-  return IsL1(options.metric) && inputs.summary.counts.used > 0
-             ? SearchL1(inputs, map, options)
-             : SearchSquares(inputs, inputs.summary, map, options);
+  const bool is_l1 = IsL1(options.metric) && inputs.summary.counts.used > 0;
+  if (is_l1 && inputs.samples != nullptr) return SearchL1(inputs, map, options);
+  absl::StatusOr<SearchOutcome> outcome = SearchSquares(inputs, inputs.summary, map, options);
+  if (!outcome.ok() || !is_l1) return outcome;
+  return AsFootprintSums(*std::move(outcome), inputs.summary.footprint_sum);
+}
+
+L1Weights WeightsForL1(const Samples& samples,
+                       const MetricWeights& metric,
+                       const Eigen::Matrix3d& map_from_ray) {
+  const std::vector<double> footprints = MetricFootprints(samples, metric, map_from_ray);
+  L1Weights result;
+  double total_weight = 0.0;
+  for (size_t i = 0; i < footprints.size(); ++i) {
+    result.footprint_sum += samples.weight[i] * footprints[i];
+    total_weight += samples.weight[i];
+  }
+  const double floor = kReweightingFloor * result.footprint_sum / total_weight;
+  for (size_t i = 0; i < footprints.size(); ++i) {
+    const double floored = std::max(footprints[i], floor);
+    result.weights.push_back(samples.weight[i] / floored);
+    result.floored_sum += samples.weight[i] * floored;
+  }
+  return result;
 }
 
 }  // namespace lightfit

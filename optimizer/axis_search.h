@@ -5,7 +5,9 @@
 // Out:  the best fitted map, where the search began, the trace.   math.md 4 and 6
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "geometry/clip.h"
@@ -33,11 +35,24 @@ struct SearchOutcome {
   std::string solver_report;
 };
 
-// Runs FitOptions::search in FitOptions::metric. The L1 metrics repeat it on reweighted samples.
-// FailedPrecondition when no axis can be used; InvalidArgument when the options need samples and
-// only a summary is known.
+// Runs FitOptions::search in FitOptions::metric. The L1 metrics follow it on reweighted samples;
+// from a summary alone they take the weights that are in it (Summary::footprint_sum).
+// FailedPrecondition when no axis can be used.
 absl::StatusOr<SearchOutcome> SearchAxis(const SearchInputs& inputs,
                                          MapSize map,
                                          const FitOptions& options);
+
+// The weights under which squares stand for footprints: each sample's weight over its footprint in
+// `map_from_ray`, which is never taken to be less than a small share of their mean. The second is
+// the weighted sum of the footprints, the third that of what the weights take them to be.
+// math.md 4
+struct L1Weights {
+  std::vector<double> weights;
+  double footprint_sum = 0.0;
+  double floored_sum = 0.0;
+};
+L1Weights WeightsForL1(const Samples& samples,
+                       const MetricWeights& metric,
+                       const Eigen::Matrix3d& map_from_ray);
 
 }  // namespace lightfit

@@ -54,22 +54,36 @@ std::array<Eigen::Vector4d, 8> Corners(const DepthTile& tile) {
   return corners;
 }
 
-// The first receiver of every tile that has any, as screen points (x, y, d, 1).
-std::vector<Eigen::Vector4d> OneReceiverPerTile(const Receivers& receivers, size_t grid) {
-  const Readback& readback = receivers.readback;
+// The receivers that are to be covered.
+struct CoveredSurfaces {
+  const Receivers& receivers;
+  const DepthTiles& tiles;
+
+  template <typename Visitor>
+  void ForEach(const DepthTile& tile, const Visitor& visit) const {
+    ForEachSurface(receivers.readback, receivers.affine_depth, tiles.filter, tile, visit);
+  }
+};
+
+// The first covered receiver of every tile that has any, as screen points (x, y, d, 1).
+std::vector<Eigen::Vector4d> OneReceiverPerTile(const CoveredSurfaces& covered, size_t grid) {
+  const Readback& readback = covered.receivers.readback;
+  const uint32_t mask = covered.tiles.filter.shadow_mask;
   const auto first_receiver = [&](const DepthTile& tile) -> Eigen::Vector4d {
     for (int y = tile.y_begin; y < tile.y_end; ++y) {
       for (int x = tile.x_begin; x < tile.x_end; ++x) {
-        const double depth = readback.depth[static_cast<size_t>(y) * readback.width() + x];
-        if (!receivers.affine_depth.IsSurface(depth)) continue;
-        return {x + 0.5, y + 0.5, receivers.affine_depth.At(x, y, depth), 1.0};
+        const size_t pixel = static_cast<size_t>(y) * readback.width() + x;
+        if (mask != 0 && (readback.shadow_bits[pixel] & mask) == 0) continue;
+        const double depth = readback.depth[pixel];
+        if (!covered.receivers.affine_depth.IsSurface(depth)) continue;
+        return {x + 0.5, y + 0.5, covered.receivers.affine_depth.At(x, y, depth), 1.0};
       }
     }
     return Eigen::Vector4d::Zero();  // not reached: the tile has a receiver
   };
   std::vector<Eigen::Vector4d> found;
-  for (const DepthTile& tile : receivers.tile_grids[grid].tiles) {
-    if (tile.num_receivers > 0) found.push_back(first_receiver(tile));
+  for (const DepthTile& tile : covered.tiles.grids[grid].tiles) {
+    if (tile.num_surfaces > 0) found.push_back(first_receiver(tile));
   }
   return found;
 }
@@ -77,19 +91,19 @@ std::vector<Eigen::Vector4d> OneReceiverPerTile(const Receivers& receivers, size
 // The convex hull of the rays of one read-back, seen along the third axis of a frame.
 class HullBuilder {
  public:
-  HullBuilder(const Receivers& receivers, const Matrix34d& frame_from_screen)
-      : receivers_(receivers), frame_from_screen_(frame_from_screen) {}
+  HullBuilder(const CoveredSurfaces& covered, const Matrix34d& frame_from_screen)
+      : covered_(covered), frame_from_screen_(frame_from_screen) {}
 
   Polygon ExactHull() {
     // One receiver of every middling tile gives a first hull that is not far off.
-    const size_t seeds = receivers_.tile_grids.size() > 1 ? 1 : 0;
-    for (const Eigen::Vector4d& receiver : OneReceiverPerTile(receivers_, seeds)) {
+    const size_t seeds = covered_.tiles.grids.size() > 1 ? 1 : 0;
+    for (const Eigen::Vector4d& receiver : OneReceiverPerTile(covered_, seeds)) {
       pending_.push_back(Project(receiver));
     }
     UpdateHull();
     // Then every tile whose box reaches out of what is known is looked into, coarse to fine.
-    const size_t coarsest = receivers_.tile_grids.size() - 1;
-    for (size_t i = 0; i < receivers_.tile_grids[coarsest].tiles.size(); ++i) Visit(coarsest, i);
+    const size_t coarsest = covered_.tiles.grids.size() - 1;
+    for (size_t i = 0; i < covered_.tiles.grids[coarsest].tiles.size(); ++i) Visit(coarsest, i);
     UpdateHull();
     return std::move(hull_);
   }
@@ -104,9 +118,9 @@ class HullBuilder {
   // Looks into a tile unless its box is inside the hull. Also where InsideTest does not recognise
   // it.
   void Visit(size_t level, size_t index) {
-    const TileGrid& grid = receivers_.tile_grids[level];
+    const TileGrid& grid = covered_.tiles.grids[level];
     const DepthTile& tile = grid.tiles[index];
-    if (tile.num_receivers == 0) return;
+    if (tile.num_surfaces == 0) return;
     const std::array<Eigen::Vector4d, 8> corners = Corners(tile);
     if (std::all_of(corners.begin(), corners.end(), [this](const Eigen::Vector4d& corner) {
           return (*inside_)(Project(corner));
@@ -114,15 +128,15 @@ class HullBuilder {
       return;
     }
     if (level == 0) {
-      receivers_.ForEachReceiver(tile, [this](int x, int y, double d) {
+      covered_.ForEach(tile, [this](int x, int y, double d) {
         const Eigen::Vector2d point = Project({x + 0.5, y + 0.5, d, 1.0});
         if (!(*inside_)(point)) pending_.push_back(point);
       });
       if (pending_.size() > kMaxPending) UpdateHull();
       return;
     }
-    constexpr int kSide = Receivers::kTilesPerSide;
-    const TileGrid& finer = receivers_.tile_grids[level - 1];
+    constexpr int kSide = DepthTiles::kTilesPerSide;
+    const TileGrid& finer = covered_.tiles.grids[level - 1];
     const int first_row = static_cast<int>(index) / grid.columns * kSide;
     const int first_column = static_cast<int>(index) % grid.columns * kSide;
     for (int row = first_row; row < std::min(first_row + kSide, finer.rows); ++row) {
@@ -140,7 +154,7 @@ class HullBuilder {
     inside_.emplace(hull_);
   }
 
-  const Receivers& receivers_;
+  const CoveredSurfaces& covered_;
   const Matrix34d frame_from_screen_;
   std::vector<Eigen::Vector2d> pending_;  // receivers that may lie outside hull_
   Polygon hull_;
@@ -148,11 +162,11 @@ class HullBuilder {
 };
 
 // A box for every receiver: the way out where tiles reach around the light and receivers do not.
-TileGrid PixelGrid(const Receivers& receivers) {
+TileGrid PixelGrid(const CoveredSurfaces& covered) {
   TileGrid pixels;
-  for (const DepthTile& tile : receivers.tile_grids[0].tiles) {
-    if (tile.num_receivers == 0) continue;
-    receivers.ForEachReceiver(tile, [&pixels](int x, int y, double d) {
+  for (const DepthTile& tile : covered.tiles.grids[0].tiles) {
+    if (tile.num_surfaces == 0) continue;
+    covered.ForEach(tile, [&pixels](int x, int y, double d) {
       pixels.tiles.push_back({x, y, x + 1, y + 1, d, d, 1});
     });
   }
@@ -164,7 +178,7 @@ std::optional<Eigen::Vector3d> AxisOfBoxes(const TileGrid& grid, const Matrix34d
   std::vector<Eigen::Vector3d> rays;
   rays.reserve(8 * grid.tiles.size());
   for (const DepthTile& tile : grid.tiles) {
-    if (tile.num_receivers == 0) continue;
+    if (tile.num_surfaces == 0) continue;
     for (const Eigen::Vector4d& corner : Corners(tile)) rays.push_back(ray_from_screen * corner);
   }
   return FeasibleAxis(rays);
@@ -173,14 +187,34 @@ std::optional<Eigen::Vector3d> AxisOfBoxes(const TileGrid& grid, const Matrix34d
 Eigen::Vector3d MeanRay(const TileGrid& grid, const Matrix34d& ray_from_screen) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const DepthTile& tile : grid.tiles) {
-    if (tile.num_receivers == 0) continue;
+    if (tile.num_surfaces == 0) continue;
     const Eigen::Vector4d middle(0.5 * (tile.x_begin + tile.x_end),
                                  0.5 * (tile.y_begin + tile.y_end),
                                  0.5 * (tile.d_min + tile.d_max),
                                  1.0);
-    sum += tile.num_receivers * (ray_from_screen * middle).normalized();
+    sum += tile.num_surfaces * (ray_from_screen * middle).normalized();
   }
   return sum.normalized();
+}
+
+// The boxes that hold rays close to the covered ones, in four times their square, and perhaps some
+// more: all but those whose corners lie beyond one and the same side of it.
+TileGrid BoxesAlong(const TileGrid& grid, const Matrix34d& normalized_from_screen) {
+  constexpr double kCloseBy = 4.0;
+  TileGrid close;
+  for (const DepthTile& tile : grid.tiles) {
+    if (tile.num_surfaces == 0) continue;
+    // Bits: which sides all corners seen so far are beyond.
+    unsigned beyond = 0xf;
+    for (const Eigen::Vector4d& corner : Corners(tile)) {
+      const Eigen::Vector3d ray = normalized_from_screen * corner;
+      const double limit = kCloseBy * ray.z();
+      beyond &= (ray.x() > limit ? 1u : 0u) | (-ray.x() > limit ? 2u : 0u) |
+                (ray.y() > limit ? 4u : 0u) | (-ray.y() > limit ? 8u : 0u);
+    }
+    if (beyond == 0) close.tiles.push_back(tile);
+  }
+  return close;
 }
 
 // The range over all boxes of a linear function of the world point, which is extreme at corners.
@@ -190,7 +224,7 @@ DepthRange RangeOverBoxes(const TileGrid& grid,
   DepthRange range = {std::numeric_limits<double>::infinity(),
                       -std::numeric_limits<double>::infinity()};
   for (const DepthTile& tile : grid.tiles) {
-    if (tile.num_receivers == 0) continue;
+    if (tile.num_surfaces == 0) continue;
     for (const Eigen::Vector4d& corner : Corners(tile)) {
       const double depth = depth_from_screen.dot(corner) / scale_from_screen.dot(corner);
       range = {std::min(range.near, depth), std::max(range.far, depth)};
@@ -201,47 +235,65 @@ DepthRange RangeOverBoxes(const TileGrid& grid,
 
 }  // namespace
 
-absl::StatusOr<RayCover> CoverReceivers(const Receivers& receivers, const Light& light) {
+absl::StatusOr<RayCover> CoverReceivers(const Receivers& receivers,
+                                        const Light& light,
+                                        Cover which) {
+  DepthTiles shadowed;
+  if (which == Cover::kShadowed) {
+    shadowed = BuildDepthTiles(
+        receivers.readback, receivers.affine_depth, {uint32_t{1} << light.shadow_bit});
+  }
+  const bool covers_all = shadowed.num_surfaces == 0;
+  const CoveredSurfaces covered = {receivers, covers_all ? receivers.tiles : shadowed};
+  const DepthTiles& tiles = covered.tiles;
   const Matrix34d ray_from_screen = RayFromWorld(light) * receivers.world_from_screen;
   const Eigen::RowVector4d scale_from_screen = receivers.world_from_screen.row(3);
-  const TileGrid* boxes = &receivers.tile_grids[0];
+  const TileGrid* boxes = &tiles.grids[0];
   RayCover cover;
   Eigen::Matrix3d frame_from_ray = Eigen::Matrix3d::Identity();
+  Eigen::RowVector4d depth_from_screen;
   TileGrid pixels;
   if (light.kind == Light::Kind::kPoint) {
     // Few, coarse boxes will do unless they reach around the light where finer ones do not.
     std::optional<Eigen::Vector3d> axis;
-    for (size_t level = std::min<size_t>(1, receivers.tile_grids.size() - 1) + 1; level-- > 0;) {
-      axis = AxisOfBoxes(receivers.tile_grids[level], ray_from_screen);
+    for (size_t level = std::min<size_t>(1, tiles.grids.size() - 1) + 1; level-- > 0;) {
+      axis = AxisOfBoxes(tiles.grids[level], ray_from_screen);
       if (axis.has_value()) break;
     }
     if (!axis.has_value()) {
       // Look at every receiver, unless a few of them surround the light already.
       std::vector<Eigen::Vector3d> some_rays;
-      for (const Eigen::Vector4d& receiver : OneReceiverPerTile(receivers, 0)) {
+      for (const Eigen::Vector4d& receiver : OneReceiverPerTile(covered, 0)) {
         some_rays.push_back(ray_from_screen * receiver);
       }
       if (!FeasibleAxis(some_rays).has_value()) return SurroundedError(light);
-      pixels = PixelGrid(receivers);
+      pixels = PixelGrid(covered);
       boxes = &pixels;
       axis = AxisOfBoxes(pixels, ray_from_screen);
     }
     if (!axis.has_value()) return SurroundedError(light);
     frame_from_ray = FrameAlong(*axis);
     cover.mean_ray = MeanRay(*boxes, ray_from_screen);
-    cover.depth =
-        RangeOverBoxes(*boxes, frame_from_ray.row(2) * ray_from_screen, scale_from_screen);
+    depth_from_screen = frame_from_ray.row(2) * ray_from_screen;
   } else {
-    cover.depth = RangeOverBoxes(
-        *boxes,
-        light.direction.stableNormalized().transpose() * receivers.world_from_screen.topRows<3>(),
-        scale_from_screen);
+    depth_from_screen =
+        light.direction.stableNormalized().transpose() * receivers.world_from_screen.topRows<3>();
   }
+  cover.depth = RangeOverBoxes(*boxes, depth_from_screen, scale_from_screen);
 
-  cover.hull = HullBuilder(receivers, frame_from_ray * ray_from_screen).ExactHull();
+  cover.hull = HullBuilder(covered, frame_from_ray * ray_from_screen).ExactHull();
   const std::optional<Eigen::Matrix3d> normalized = NormalizeRays(frame_from_ray, &cover.hull);
-  if (!normalized.has_value()) return FlatError(light);
+  if (!normalized.has_value()) {
+    // A single shadowed pixel, or a row of them, has no area, which is as good as no shadow.
+    return covers_all ? FlatError(light) : CoverReceivers(receivers, light, Cover::kReceivers);
+  }
   cover.normalized_from_ray = *normalized;
+  if (!covers_all) {
+    // What is lit may land in the map too, behind all that is shadowed.
+    const TileGrid close = BoxesAlong(receivers.tiles.grids[0], *normalized * ray_from_screen);
+    cover.depth.far =
+        std::max(cover.depth.far, RangeOverBoxes(close, depth_from_screen, scale_from_screen).far);
+  }
   return cover;
 }
 

@@ -1,7 +1,7 @@
 // optimizer/cover.h
 //
-// What one light's map must cover: the cone of rays to all receivers.
-// In:   Receivers, Light.
+// What one light's map must cover: the cone of rays to all receivers, or to the shadowed ones.
+// In:   Receivers, Light, Cover.
 // Out:  coordinates that fit the rays, their convex hull, their mean, and the range of depth.
 #pragma once
 
@@ -20,24 +20,31 @@ struct RayCover {
   // See NormalizeRays in geometry/ray_cone.h.
   Eigen::Matrix3d normalized_from_ray = Eigen::Matrix3d::Identity();
 
-  // The receivers' rays as (X'_1, X'_2) / X'_3: their convex hull, the origin strictly inside.
+  // The covered rays as (X'_1, X'_2) / X'_3: their convex hull, the origin strictly inside.
   Polygon hull;
 
-  // Mean of the receivers' unit rays in light space, each tile's by its middle: the axis of a
-  // focused shadow map. For a directional light always (0, 0, 1).
+  // Mean of the covered receivers' unit rays in light space, each tile's by its middle: the axis of
+  // a focused shadow map. For a directional light always (0, 0, 1).
   Eigen::Vector3d mean_ray = Eigen::Vector3d::UnitZ();
 
-  // Bounds over the receivers, world units. Point light: of X'_3, the depth along the third row of
-  // N, which is a unit vector. Directional light: of the depth along the direction of travel.
+  // Bounds, world units: near over the covered receivers, far over all whose rays run close to
+  // theirs. Point light: of X'_3, the depth along the third row of N, which is a unit vector.
+  // Directional light: of the depth along the direction of travel.
   DepthRange depth;
 };
 
-// The hull is that of the rays through the centres of all pixels with a surface, exactly: tiles are
+// The hull is that of the rays through the centres of all pixels to cover, exactly: tiles are
 // bounded by the corners of their depth boxes, and only those that reach out of the hull found so
 // far are looked into, coarse tiles before fine ones before pixels.
 //
-// FailedPrecondition when receivers surround a point light, or all lie in one plane with the light.
-absl::StatusOr<RayCover> CoverReceivers(const Receivers& receivers, const Light& light);
+// Without any shadowed surface, or with all of them in one plane with the light (one pixel, a row
+// of them), kShadowed covers every receiver.
+//
+// FailedPrecondition when the receivers to cover surround a point light, or all lie in one plane
+// with the light.
+absl::StatusOr<RayCover> CoverReceivers(const Receivers& receivers,
+                                        const Light& light,
+                                        Cover cover = Cover::kReceivers);
 
 // The cover of both, in coordinates of its own. Both must be of the same light.
 absl::StatusOr<RayCover> MergeCovers(const RayCover& a, const RayCover& b, const Light& light);

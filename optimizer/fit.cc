@@ -64,6 +64,29 @@ std::pair<double, double> RangeOfW(const Polygon& hull, const Eigen::Vector3d& a
   return range;
 }
 
+// The same over all rays that land in the map, which may be more than the hull: lit receivers among
+// them must not be clipped. Where the warp leaves no bound the hull's is stretched: the lower one
+// by little, as the depth of a directional light pays for it; the upper one, of a point light, by
+// much, as 1 / w hardly does.
+std::pair<double, double> RangeOfWOverMap(MapSize map,
+                                          const Eigen::Matrix3d& map_from_normalized,
+                                          double w_min,
+                                          double w_max) {
+  constexpr double kMostStretchBelow = 16.0, kMostStretchAbove = 1e6;
+  const Eigen::Matrix3d normalized_from_map = map_from_normalized.inverse();
+  std::pair<double, double> range = {w_min, w_max};
+  for (const double u : {0.0, static_cast<double>(map.width)}) {
+    for (const double v : {0.0, static_cast<double>(map.height)}) {
+      // The ray with w = 1 there; its third component says what w is when that is 1.
+      const double z = normalized_from_map.row(2).dot(Eigen::Vector3d(u, v, 1.0));
+      const double w = z > 0.0 ? 1.0 / z : std::numeric_limits<double>::infinity();
+      range = {std::min(range.first, w), std::max(range.second, w)};
+    }
+  }
+  return {std::max(range.first, w_min / kMostStretchBelow),
+          std::min(range.second, w_max * kMostStretchAbove)};
+}
+
 absl::StatusOr<LightMatrix> FitInputs(const SearchInputs& inputs,
                                       MapSize map,
                                       const FitOptions& options) {
@@ -82,10 +105,13 @@ absl::StatusOr<LightMatrix> FitInputs(const SearchInputs& inputs,
   }
   const Eigen::Vector3d axis = map_from_normalized.row(2);
   const auto [w_min, w_max] = RangeOfW(summary.cover.hull, axis);
+  const auto [w_min_map, w_max_map] = options.cover == Cover::kShadowed
+                                          ? RangeOfWOverMap(map, map_from_normalized, w_min, w_max)
+                                          : std::pair(w_min, w_max);
   DepthRange depth = summary.cover.depth;
   if (light.kind == Light::Kind::kPoint) {
     // w of a receiver is its depth times that of its ray.
-    depth = {depth.near * w_min, depth.far * w_max};
+    depth = {depth.near * w_min, depth.far * w_max_map};
   }
 
   LightMatrix matrix;
@@ -95,7 +121,7 @@ absl::StatusOr<LightMatrix> FitInputs(const SearchInputs& inputs,
                                        RayFromWorld(light),
                                        light,
                                        depth,
-                                       w_min);
+                                       w_min_map);
   if (!matrix.map_from_world.allFinite()) {
     return absl::InternalError(
         absl::StrFormat("light \"%s\": the matrix is not finite; please report this", light.name));
@@ -128,7 +154,7 @@ struct Prepared {
 absl::StatusOr<Prepared> Prepare(const Receivers& receivers,
                                  const Light& light,
                                  const FitOptions& options) {
-  absl::StatusOr<RayCover> cover = CoverReceivers(receivers, light);
+  absl::StatusOr<RayCover> cover = CoverReceivers(receivers, light, options.cover);
   if (!cover.ok()) return cover.status();
   const MetricWeights metric = WeightsOf(options.metric, options.along_edge_share);
   Prepared prepared;
@@ -189,7 +215,21 @@ absl::StatusOr<Summary> Summarize(const Readback& readback,
   if (!receivers.ok()) return receivers.status();
   absl::StatusOr<Prepared> prepared = Prepare(*receivers, light, options);
   if (!prepared.ok()) return prepared.status();
-  return std::move(prepared->summary);
+  Summary& summary = prepared->summary;
+  if (IsL1(options.metric) && summary.counts.used > 0) {
+    // The weights come from the best map of this read-back; its size does not matter, as footprints
+    // in proportion give weights in proportion.
+    constexpr MapSize kAnySquare = {1024, 1024};
+    const absl::StatusOr<SearchOutcome> outcome =
+        SearchAxis({light, summary, &prepared->samples, &*receivers}, kAnySquare, options);
+    if (!outcome.ok()) return outcome.status();
+    L1Weights l1 =
+        WeightsForL1(prepared->samples, summary.metric, outcome->result.fit.map_from_ray);
+    prepared->samples.weight = std::move(l1.weights);
+    summary = SummarizeSamples(prepared->samples, RayCover(summary.cover), summary.metric);
+    summary.footprint_sum = l1.floored_sum;
+  }
+  return std::move(summary);
 }
 
 absl::StatusOr<LightMatrix> Fit(const Summary& summary,
@@ -204,7 +244,9 @@ absl::StatusOr<LightMatrix> Fit(const Summary& summary,
         "options.sample_by_sample: a summary has no samples; fit from the read-back (FitLight)");
   }
   const MetricWeights metric = WeightsOf(options.metric, options.along_edge_share);
-  if (metric.across_edge != summary.metric.across_edge || metric.whole != summary.metric.whole) {
+  const bool has_weights = summary.footprint_sum > 0.0 || summary.counts.used == 0;
+  if (metric.across_edge != summary.metric.across_edge || metric.whole != summary.metric.whole ||
+      (IsL1(options.metric) ? !has_weights : summary.footprint_sum > 0.0)) {
     return absl::InvalidArgumentError(
         "options.metric or along_edge_share is not what the samples were summed with: summarise "
         "and "

@@ -38,9 +38,10 @@ std::vector<absl::StatusOr<LightMatrix>> FitLights(const Readback& readback,
                                                    const FitOptions& options = {});
 
 // The two halves of FitLight: everything the read-back has to say about this light, in about a
-// kilobyte, and the fit from that alone. Summaries of one light add (Summary::Merge). The L1
-// metrics need the samples themselves and are refused here; statistics beyond the RMS are left at
-// 0.
+// kilobyte, and the fit from that alone. Summaries of one light add (MergeSummaries). For the L1
+// metrics Summarize() weighs the samples by their footprints in the best map of this read-back, and
+// Fit() keeps to those weights; its energies are then bounds, see Summary::footprint_sum.
+// Statistics beyond the RMS are left at 0.
 absl::StatusOr<Summary> Summarize(const Readback& readback,
                                   const Light& light,
                                   const FitOptions& options = {});

@@ -16,8 +16,15 @@ absl::Status OutOfRange(const char* field, double value, const char* want) {
 
 }  // namespace
 
+bool IsL1(Metric metric) { return metric == Metric::kL1 || metric == Metric::kL1AcrossEdge; }
+
 FitOptions FitOptions::AsPublished() {
   FitOptions options;
+  options.samples.use_outlines = false;
+  options.samples.use_terminators = true;
+  options.samples.min_cos_light = 0.02;
+  options.metric = Metric::kL2;
+  options.cover = Cover::kReceivers;
   options.search = Search::kRotationLineSearch;
   options.affine = Affine::kMinAreaRectangle;
   options.ray_space = RaySpace::kLightSpace;

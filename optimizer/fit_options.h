@@ -18,9 +18,18 @@ struct SampleOptions {
   // camera has first differences near zero, where their ratio is only rounding noise. >= 0.
   double depth_noise = 1e-5;
 
+  // Whether pixels at a depth discontinuity count as well: shadow edges run along outlines, and on
+  // thin things there is nothing else. Their derivative is that of the side that continues.
+  bool use_outlines = true;
+
+  // Whether a shadow's border with surfaces that are turned away from the light counts as an edge.
+  // Nothing is lit on either side of it.
+  bool use_terminators = false;
+
   // Surfaces closer to edge-on than this are rejected: cosine between the surface normal and the
-  // direction to the light, or to the eye. In [0, 1).
-  double min_cos_light = 0.02;
+  // direction to the light, or to the eye. In [0, 1). Under a low sun the whole floor is nearly
+  // edge-on to the light, and where its shadows lie.
+  double min_cos_light = 0.002;
   double min_cos_eye = 0.01;
 
   // Fewer boundary samples than this are not fitted: the optimum would serve one corner of one
@@ -28,7 +37,7 @@ struct SampleOptions {
   int min_samples = 8;
 
   // Half width of the window, in pixels, over which the direction of a shadow edge is estimated
-  // (kAcrossEdge metrics only). 1 ... 8.
+  // (the metrics across the edge only). 1 ... 8.
   int edge_window = 2;
 };
 
@@ -38,6 +47,15 @@ enum class Metric {
   kL2AcrossEdge,  // squared extent across the shadow's edge, plus a little of kL2: math.md 4
   kL1,            // footprint, by iteratively reweighted kL2
   kL1AcrossEdge   // extent across the shadow's edge, by iteratively reweighted kL2AcrossEdge
+};
+
+bool IsL1(Metric metric);
+
+// What the map must have room for.
+enum class Cover {
+  kReceivers,  // every surface in view: nothing that comes to be shadowed is outside
+  kShadowed  // every shadowed surface in view: what is lit may lie outside the map, where a look-up
+             // finds light. Every surface where the shadow has no area
 };
 
 // How the axis (the projective part of the matrix) is found.
@@ -70,11 +88,14 @@ enum class RaySpace {
 
 struct FitOptions {
   SampleOptions samples;
-  Metric metric = Metric::kL2;
+  Metric metric = Metric::kL1AcrossEdge;
+  Cover cover = Cover::kShadowed;
   Search search = Search::kGlobal;
   Affine affine = Affine::kMinEnergyParallelogram;
   RaySpace ray_space = RaySpace::kNormalized;
   Refiner refiner = Refiner::kTinySolver;
+
+  // The defaults are those that leave the fewest wrong shadow pixels: docs/defaults.md.
 
   // The read-back is coarse, so the enclosing shape is grown on every side by this share of its
   // extent, in percent, and by this many texels. >= 0.
@@ -105,7 +126,8 @@ struct FitOptions {
   // Worst footprint and percentiles take one more pass over the samples.
   bool compute_statistics = true;
 
-  // Chong & Gortler's Algorithm 1 to the letter: light space, minimum-area rectangle, three rounds.
+  // Chong & Gortler's Algorithm 1 to the letter: squared footprints, all receivers covered, light
+  // space, minimum-area rectangle, three rounds; no samples at depth discontinuities.
   static FitOptions AsPublished();
 };
 

@@ -19,7 +19,7 @@ struct SampleCounts {
   int64_t candidates = 0;     // pixels whose shadow bit differs from a neighbour's
   int64_t background = 0;     // candidates without a surface
   int64_t discontinuity = 0;  // candidates at a depth discontinuity
-  int64_t facing_away = 0;    // candidates whose surface faces away from the light
+  int64_t facing_away = 0;    // candidates whose surface, or whose lit side, faces away
   int64_t edge_on = 0;        // candidates edge-on to the light or the eye
   int64_t used = 0;           // candidates - all of the above but receivers, invalid_depth
 };

@@ -15,12 +15,17 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 DepthStatistics ScanDepthSimd(const float* depth,
+                              const uint32_t* bits,
+                              uint32_t mask,
                               size_t stride,
                               size_t columns,
                               size_t rows,
                               const DepthIntervals& intervals) {
   const hn::CappedTag<float, 16> tag;
+  const hn::RebindToUnsigned<decltype(tag)> bits_tag;
   const size_t lanes = hn::Lanes(tag);
+  const auto mask_vector = hn::Set(bits_tag, bits == nullptr ? ~0u : mask);
+  const auto all_bits = hn::Set(bits_tag, ~0u);
   const auto surface_min = hn::Set(tag, intervals.surface_min);
   const auto surface_max = hn::Set(tag, intervals.surface_max);
   const auto background_min = hn::Set(tag, intervals.background_min);
@@ -31,8 +36,11 @@ DepthStatistics ScanDepthSimd(const float* depth,
   const auto one = hn::Set(tag, 1.0f);
   auto num_surface = hn::Zero(tag);
   auto num_background = hn::Zero(tag);
-  const auto accumulate = [&](hn::Vec<decltype(tag)> value) HWY_ATTR {
-    const auto surface = hn::And(hn::Gt(value, surface_min), hn::Lt(value, surface_max));
+  const auto accumulate = [&](hn::Vec<decltype(tag)> value,
+                              hn::Vec<decltype(bits_tag)> word) HWY_ATTR {
+    const auto wanted = hn::RebindMask(tag, hn::Ne(hn::And(word, mask_vector), hn::Zero(bits_tag)));
+    const auto surface =
+        hn::And(wanted, hn::And(hn::Gt(value, surface_min), hn::Lt(value, surface_max)));
     const auto background = hn::And(hn::Ge(value, background_min), hn::Le(value, background_max));
     low = hn::IfThenElse(surface, hn::Min(low, value), low);
     high = hn::IfThenElse(surface, hn::Max(high, value), high);
@@ -41,14 +49,21 @@ DepthStatistics ScanDepthSimd(const float* depth,
   };
   const size_t whole = columns / lanes * lanes;
   for (size_t y = 0; y < rows; ++y, depth += stride) {
-    for (size_t x = 0; x < whole; x += lanes) accumulate(hn::LoadU(tag, depth + x));
+    const uint32_t* row_bits = bits == nullptr ? nullptr : bits + y * stride;
+    for (size_t x = 0; x < whole; x += lanes) {
+      accumulate(hn::LoadU(tag, depth + x),
+                 bits == nullptr ? all_bits : hn::LoadU(bits_tag, row_bits + x));
+    }
     if (whole == columns) continue;
     // The last few values, padded with NaN, which is neither surface nor background. (A masked load
     // would read past the end where the processor has none.)
     HWY_ALIGN float padded[16];
     std::fill(padded, padded + 16, std::numeric_limits<float>::quiet_NaN());
     std::copy(depth + whole, depth + columns, padded);
-    accumulate(hn::Load(tag, padded));
+    HWY_ALIGN uint32_t padded_bits[16];
+    std::fill(padded_bits, padded_bits + 16, ~0u);
+    if (bits != nullptr) std::copy(row_bits + whole, row_bits + columns, padded_bits);
+    accumulate(hn::Load(tag, padded), hn::Load(bits_tag, padded_bits));
   }
   DepthStatistics statistics;
   statistics.num_surface = static_cast<int>(hn::GetLane(hn::SumOfLanes(tag, num_surface)));
@@ -101,11 +116,13 @@ HWY_EXPORT(ScanDepthSimd);
 HWY_EXPORT(ScanBoundarySimd);
 
 DepthStatistics ScanDepth(const float* depth,
+                          const uint32_t* bits,
+                          uint32_t mask,
                           size_t stride,
                           size_t columns,
                           size_t rows,
                           const DepthIntervals& intervals) {
-  return HWY_DYNAMIC_DISPATCH(ScanDepthSimd)(depth, stride, columns, rows, intervals);
+  return HWY_DYNAMIC_DISPATCH(ScanDepthSimd)(depth, bits, mask, stride, columns, rows, intervals);
 }
 
 size_t ScanBoundary(

@@ -22,8 +22,11 @@ struct DepthStatistics {
   int num_background = 0;
 };
 
-// Statistics of the rectangle of `columns` x `rows` values whose rows are `stride` apart.
+// Statistics of the rectangle of `columns` x `rows` values whose rows are `stride` apart. With
+// `bits` (laid out as `depth`; else null) only surfaces with a bit of `mask` count.
 DepthStatistics ScanDepth(const float* depth,
+                          const uint32_t* bits,
+                          uint32_t mask,
                           size_t stride,
                           size_t columns,
                           size_t rows,

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <utility>
+#include <optional>
 
 #include "absl/strings/str_format.h"
 #include "optimizer/readback_kernels.h"
@@ -12,72 +12,6 @@
 namespace lightfit {
 
 namespace {
-
-// Side of the finest tiles, pixels: small enough to bound depth well, and many pixels to a tile.
-int TileSize(int width, int height) { return std::max(width, height) <= 512 ? 8 : 16; }
-
-// Grids are merged until one has at most this many tiles.
-constexpr size_t kMaxCoarsestTiles = 64;
-
-TileGrid MergeTiles(const TileGrid& fine) {
-  constexpr int kSide = Receivers::kTilesPerSide;
-  TileGrid coarse;
-  coarse.columns = (fine.columns + kSide - 1) / kSide;
-  coarse.rows = (fine.rows + kSide - 1) / kSide;
-  coarse.tiles.reserve(static_cast<size_t>(coarse.columns) * coarse.rows);
-  for (int row = 0; row < fine.rows; row += kSide) {
-    for (int column = 0; column < fine.columns; column += kSide) {
-      const int last_row = std::min(row + kSide, fine.rows) - 1;
-      const int last_column = std::min(column + kSide, fine.columns) - 1;
-      DepthTile merged = fine.tiles[static_cast<size_t>(row) * fine.columns + column];
-      const DepthTile& last =
-          fine.tiles[static_cast<size_t>(last_row) * fine.columns + last_column];
-      merged.x_end = last.x_end;
-      merged.y_end = last.y_end;
-      merged.num_receivers = 0;
-      for (int y = row; y <= last_row; ++y) {
-        for (int x = column; x <= last_column; ++x) {
-          const DepthTile& tile = fine.tiles[static_cast<size_t>(y) * fine.columns + x];
-          if (tile.num_receivers == 0) continue;
-          const bool first = merged.num_receivers == 0;
-          merged.d_min = first ? tile.d_min : std::min(merged.d_min, tile.d_min);
-          merged.d_max = first ? tile.d_max : std::max(merged.d_max, tile.d_max);
-          merged.num_receivers += tile.num_receivers;
-        }
-      }
-      coarse.tiles.push_back(merged);
-    }
-  }
-  return coarse;
-}
-
-internal::DepthIntervals Intervals(const AffineDepth& affine_depth) {
-  return {static_cast<float>(affine_depth.surface_min()),
-          static_cast<float>(affine_depth.surface_max()),
-          static_cast<float>(affine_depth.background_min()),
-          static_cast<float>(affine_depth.background_max())};
-}
-
-// The range of affine depth over a tile. Depth kinds that are monotonic in d give it from their own
-// range; distances need each pixel's.
-void SetAffineRange(const Receivers& receivers,
-                    const AffineDepth& affine_depth,
-                    const internal::DepthStatistics& statistics,
-                    DepthTile* tile) {
-  if (affine_depth.is_pixel_independent()) {
-    const double a = affine_depth.At(0, 0, statistics.min);
-    const double b = affine_depth.At(0, 0, statistics.max);
-    tile->d_min = std::min(a, b);
-    tile->d_max = std::max(a, b);
-    return;
-  }
-  tile->d_min = std::numeric_limits<double>::infinity();
-  tile->d_max = -tile->d_min;
-  receivers.ForEachReceiver(*tile, [tile](int, int, double d) {
-    tile->d_min = std::min(tile->d_min, d);
-    tile->d_max = std::max(tile->d_max, d);
-  });
-}
 
 absl::Status NoReceiversError(const Readback& readback, int64_t num_invalid, int64_t num_pixels) {
   if (num_invalid == 0) {
@@ -107,26 +41,42 @@ bool DepthGradientAt(const Readback& readback,
   const int width = readback.width();
   if (x < 1 || y < 1 || x + 1 >= width || y + 1 >= readback.height()) return false;
   const float* centre = readback.depth.data() + static_cast<size_t>(y) * width + x;
-  const float left = centre[-1], right = centre[1];
-  const float above = centre[-width], below = centre[width];
-  if (!affine_depth.IsSurface(*centre) || !affine_depth.IsSurface(left) ||
-      !affine_depth.IsSurface(right) || !affine_depth.IsSurface(above) ||
-      !affine_depth.IsSurface(below)) {
-    return false;
-  }
+  if (!affine_depth.IsSurface(*centre)) return false;
   const double d = affine_depth.At(x, y, *centre);
-  const double to_left = affine_depth.At(x - 1, y, left) - d;
-  const double to_right = affine_depth.At(x + 1, y, right) - d;
-  const double to_above = affine_depth.At(x, y - 1, above) - d;
-  const double to_below = affine_depth.At(x, y + 1, below) - d;
-  const double noise = options.depth_noise * std::abs(d);
-  const auto bends = [&](double back, double ahead) {
-    const double second = std::abs(back + ahead);
-    const double first = std::max(std::abs(back), std::abs(ahead));
-    return second > options.max_depth_bend * first && second > noise;
+  // How much deeper the pixel `steps` away along (dx, dy) is than this one.
+  const auto rise = [&](int dx, int dy, int steps) -> std::optional<double> {
+    const int px = x + steps * dx, py = y + steps * dy;
+    if (px < 0 || py < 0 || px >= width || py >= readback.height()) return std::nullopt;
+    const float depth = readback.depth[static_cast<size_t>(py) * width + px];
+    if (!affine_depth.IsSurface(depth)) return std::nullopt;
+    return affine_depth.At(px, py, depth) - d;
   };
-  if (bends(to_left, to_right) || bends(to_above, to_below)) return false;
-  *gradient = {d, 0.5 * (to_right - to_left), 0.5 * (to_below - to_above)};
+  const double noise = options.depth_noise * std::abs(d);
+  const auto derivative = [&](int dx, int dy) -> std::optional<double> {
+    const std::optional<double> back = rise(dx, dy, -1), ahead = rise(dx, dy, 1);
+    if (back.has_value() && ahead.has_value()) {
+      const double second = std::abs(*back + *ahead);
+      const double first = std::max(std::abs(*back), std::abs(*ahead));
+      const bool bends = second > options.max_depth_bend * first && second > noise;
+      if (!bends) return 0.5 * (*ahead - *back);
+    }
+    if (!options.use_outlines) return std::nullopt;
+    if (!back.has_value() || !ahead.has_value()) {
+      return back.has_value() ? std::optional<double>(-*back) : ahead;
+    }
+    // The side that goes on as it begins is the surface's own; else the one nearer in depth.
+    const std::optional<double> back_twice = rise(dx, dy, -2), ahead_twice = rise(dx, dy, 2);
+    double back_misfit = std::abs(*back), ahead_misfit = std::abs(*ahead);
+    if (back_twice.has_value() && ahead_twice.has_value()) {
+      back_misfit = std::abs(*back_twice - 2.0 * *back);
+      ahead_misfit = std::abs(*ahead_twice - 2.0 * *ahead);
+    }
+    return back_misfit < ahead_misfit ? -*back : *ahead;
+  };
+  const std::optional<double> d_x = derivative(1, 0);
+  const std::optional<double> d_y = derivative(0, 1);
+  if (!d_x.has_value() || !d_y.has_value()) return false;
+  *gradient = {d, *d_x, *d_y};
   return true;
 }
 
@@ -155,36 +105,10 @@ absl::StatusOr<Receivers> FindReceivers(const Readback& readback,
   const int height = readback.height();
   Receivers receivers(readback, options);
   const AffineDepth& affine_depth = receivers.affine_depth;
-  const internal::DepthIntervals intervals = Intervals(affine_depth);
-  const int tile_size = TileSize(width, height);
-  int64_t num_receivers = 0, num_background = 0;
-  TileGrid finest;
-  finest.columns = (width + tile_size - 1) / tile_size;
-  finest.rows = (height + tile_size - 1) / tile_size;
-  finest.tiles.reserve(static_cast<size_t>(finest.columns) * finest.rows);
-  for (int y = 0; y < height; y += tile_size) {
-    for (int x = 0; x < width; x += tile_size) {
-      DepthTile tile = {
-          x, y, std::min(x + tile_size, width), std::min(y + tile_size, height), 0.0, 0.0, 0};
-      const internal::DepthStatistics statistics =
-          internal::ScanDepth(readback.depth.data() + static_cast<size_t>(y) * width + x,
-                              width,
-                              tile.x_end - x,
-                              tile.y_end - y,
-                              intervals);
-      num_background += statistics.num_background;
-      num_receivers += statistics.num_surface;
-      tile.num_receivers = statistics.num_surface;
-      if (tile.num_receivers > 0) SetAffineRange(receivers, affine_depth, statistics, &tile);
-      finest.tiles.push_back(tile);
-    }
-  }
-  receivers.tile_grids.push_back(std::move(finest));
-  while (receivers.tile_grids.back().tiles.size() > kMaxCoarsestTiles) {
-    receivers.tile_grids.push_back(MergeTiles(receivers.tile_grids.back()));
-  }
+  receivers.tiles = BuildDepthTiles(readback, affine_depth, SurfaceFilter());
+  const int64_t num_receivers = receivers.tiles.num_surfaces;
   const int64_t num_pixels = static_cast<int64_t>(width) * height;
-  const int64_t num_invalid = num_pixels - num_receivers - num_background;
+  const int64_t num_invalid = num_pixels - num_receivers - receivers.tiles.num_background;
   if (num_receivers == 0) return NoReceiversError(readback, num_invalid, num_pixels);
   for (SampleCounts& counts : receivers.counts) {
     counts.receivers = num_receivers;

@@ -13,29 +13,14 @@
 
 #include "absl/status/statusor.h"
 #include "geometry/light.h"
+#include "optimizer/depth_tiles.h"
 #include "optimizer/fit_options.h"
 #include "optimizer/light_matrix.h"
 #include "optimizer/readback.h"
 
 namespace lightfit {
 
-// A rectangle of pixels, begin included, end excluded, and the range of affine depth of its
-// surfaces, if it has any. As rays are linear in (x, y, d, 1), those of all its surfaces lie in the
-// hull of the rays at the eight corners of the box.   math.md 2
-struct DepthTile {
-  int x_begin, y_begin, x_end, y_end;
-  double d_min, d_max;
-  int num_receivers;
-};
-
-// Tiles that cover the image, in row order.
-struct TileGrid {
-  int columns = 0;
-  int rows = 0;
-  std::vector<DepthTile> tiles;
-};
-
-// A pixel at a shadow boundary of some light, where the surface continues to all four neighbours.
+// A pixel at a shadow boundary of some light, on a surface whose plane its neighbours tell.
 struct BoundaryPixel {
   int x, y;                  // column and row
   uint32_t lights;           // bits that differ from a neighbour's
@@ -57,17 +42,10 @@ struct Receivers {
   SampleOptions options;
   AffineDepth affine_depth;  // of the read-back's camera and depth kind
   Eigen::Matrix4d world_from_screen;
-  // Finest first; a tile of each further grid is made of kTilesPerSide^2 tiles of the one before.
-  std::vector<TileGrid> tile_grids;
+  DepthTiles tiles;                     // of all receivers
   std::vector<BoundaryPixel> boundary;  // in pixel order
   std::array<SampleCounts, kMaxLights>
       counts;  // by shadow bit; used, facing_away, edge_on are 0 yet
-
-  static constexpr int kTilesPerSide = 4;
-
-  // Calls visit(x, y, d) at every receiver of the tile, in row order.
-  template <typename Visitor>
-  void ForEachReceiver(const DepthTile& tile, const Visitor& visit) const;
 };
 
 // Looks at the shadow bits in `light_mask` only. Pixels in the outermost rows and columns have no
@@ -77,8 +55,11 @@ absl::StatusOr<Receivers> FindReceivers(const Readback& readback,
                                         uint32_t light_mask,
                                         const SampleOptions& options);
 
-// Affine depth and its derivatives at an inner pixel, from central differences. False at a depth
-// discontinuity and next to the background: SampleOptions::max_depth_bend says what that means.
+// Affine depth and its derivatives at an inner pixel: central differences where the surface
+// continues to both sides (SampleOptions::max_depth_bend). At an outline or a crease, where it does
+// not, the difference to the side whose next pixel continues it best, or false without
+// SampleOptions::use_outlines.
+// False where there is no surface, or none on either side.
 struct DepthGradient {
   double d, d_x, d_y;
 };
@@ -96,17 +77,5 @@ Eigen::Vector3d SurfaceNormal(const Eigen::Matrix4d& screen_from_world,
                               int x,
                               int y,
                               const DepthGradient& gradient);
-
-// ---- inline bodies ----
-
-template <typename Visitor>
-void Receivers::ForEachReceiver(const DepthTile& tile, const Visitor& visit) const {
-  for (int y = tile.y_begin; y < tile.y_end; ++y) {
-    for (int x = tile.x_begin; x < tile.x_end; ++x) {
-      const double depth = readback.depth[static_cast<size_t>(y) * readback.width() + x];
-      if (affine_depth.IsSurface(depth)) visit(x, y, affine_depth.At(x, y, depth));
-    }
-  }
-}
 
 }  // namespace lightfit

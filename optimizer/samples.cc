@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "optimizer/edge_normals.h"
+
 namespace lightfit {
 
 Sample Samples::At(size_t i) const {
@@ -23,57 +25,100 @@ Sample Samples::At(size_t i) const {
   return sample;
 }
 
-Eigen::Vector2d ShadowEdgeNormal(
-    const Readback& readback, const AffineDepth& affine_depth, int bit, int window, int x, int y) {
-  // Gaussian weights with the window at two standard deviations.
-  const double inverse_variance = 4.0 / (window * window);
-  double sum_weight = 0.0, sum_bit = 0.0;
-  Eigen::Vector2d sum_offset = Eigen::Vector2d::Zero(), sum_bit_offset = Eigen::Vector2d::Zero();
-  for (int dy = -window; dy <= window; ++dy) {
-    for (int dx = -window; dx <= window; ++dx) {
-      const int px = x + dx, py = y + dy;
-      if (px < 0 || py < 0 || px >= readback.width() || py >= readback.height()) continue;
-      const size_t index = static_cast<size_t>(py) * readback.width() + px;
-      if (!affine_depth.IsSurface(readback.depth[index])) continue;
-      const double weight = std::exp(-0.5 * inverse_variance * (dx * dx + dy * dy));
-      const double shadow = (readback.shadow_bits[index] >> bit) & 1u;
-      sum_weight += weight;
-      sum_bit += weight * shadow;
-      sum_offset += weight * Eigen::Vector2d(dx, dy);
-      sum_bit_offset += weight * shadow * Eigen::Vector2d(dx, dy);
-    }
-  }
-  // Covariance of bit and offset: the gradient up to a scale, indifferent to missing pixels.
-  const Eigen::Vector2d gradient = sum_bit_offset - sum_bit / sum_weight * sum_offset;
-  const double length = gradient.norm();
-  return length > 1e-9 ? Eigen::Vector2d(gradient / length) : Eigen::Vector2d(0.0, 0.0);
+namespace {
+
+enum class Facing : uint8_t { kAway, kEdgeOn, kTowards };
+
+Facing FacingOf(const BoundaryPixel& pixel, const Light& light, double min_cos_light) {
+  const Eigen::Vector3d to_light = light.kind == Light::Kind::kPoint
+                                       ? Eigen::Vector3d(light.position - pixel.position)
+                                       : Eigen::Vector3d(-light.direction.stableNormalized());
+  const double facing = pixel.normal.dot(to_light);
+  if (facing <= 0.0) return Facing::kAway;
+  // Also false for a light at the receiver, and for normals that are not finite.
+  const bool is_seen = !pixel.edge_on_to_eye && facing > min_cos_light * to_light.norm();
+  return is_seen ? Facing::kTowards : Facing::kEdgeOn;
 }
+
+// Tells shadow edges from terminators: the borders between shadow and surfaces that are turned away
+// from the light, whose bit is 0 because no shadow is looked up there.
+class Terminators {
+ public:
+  Terminators(const Receivers& receivers, uint32_t bit, const std::vector<Facing>& facing)
+      : receivers_(receivers), bit_(bit), facing_(facing) {
+    row_begin_.reserve(receivers.readback.height() + 1);
+    for (size_t i = 0; i < receivers.boundary.size(); ++i) {
+      while (static_cast<int>(row_begin_.size()) <= receivers.boundary[i].y) {
+        row_begin_.push_back(i);
+      }
+    }
+    row_begin_.resize(receivers.readback.height() + 1, receivers.boundary.size());
+  }
+
+  // Whether every neighbour without shadow of a shadowed pixel is turned away from the light.
+  bool Has(const BoundaryPixel& pixel) const {
+    if ((Word(pixel.x, pixel.y) & bit_) == 0) return false;
+    return IsShadowedOrAway(pixel.x - 1, pixel.y) && IsShadowedOrAway(pixel.x + 1, pixel.y) &&
+           IsShadowedOrAway(pixel.x, pixel.y - 1) && IsShadowedOrAway(pixel.x, pixel.y + 1);
+  }
+
+ private:
+  uint32_t Word(int x, int y) const {
+    return receivers_.readback
+        .shadow_bits[static_cast<size_t>(y) * receivers_.readback.width() + x];
+  }
+
+  // A neighbour without shadow is a boundary pixel itself, unless no plane is known there.
+  bool IsShadowedOrAway(int x, int y) const {
+    if ((Word(x, y) & bit_) != 0) return true;
+    const auto begin = receivers_.boundary.begin();
+    const auto found =
+        std::lower_bound(begin + row_begin_[y],
+                         begin + row_begin_[y + 1],
+                         x,
+                         [](const BoundaryPixel& pixel, int column) { return pixel.x < column; });
+    return found != begin + row_begin_[y + 1] && found->x == x &&
+           facing_[found - begin] == Facing::kAway;
+  }
+
+  const Receivers& receivers_;
+  uint32_t bit_;
+  const std::vector<Facing>& facing_;  // by boundary pixel
+  std::vector<size_t> row_begin_;      // in Receivers::boundary
+};
+
+}  // namespace
 
 Samples SelectSamples(const Receivers& receivers,
                       const Light& light,
                       const Eigen::Matrix3d& normalized_from_ray,
                       bool with_edge_normals) {
   const uint32_t bit = uint32_t{1} << light.shadow_bit;
-  const Eigen::Vector3d towards_sun = -light.direction.stableNormalized();
-
   Samples samples;
   samples.ray_from_screen = normalized_from_ray * RayFromWorld(light) * receivers.world_from_screen;
   samples.counts = receivers.counts[light.shadow_bit];
   for (auto* array : {&samples.x, &samples.y, &samples.d, &samples.d_x, &samples.d_y}) {
     array->reserve(samples.counts.candidates);
   }
+  const EdgeNormals edge_normals(
+      receivers.readback, receivers.affine_depth, light.shadow_bit, receivers.options.edge_window);
+  std::vector<Facing> facing;
+  facing.reserve(receivers.boundary.size());
   for (const BoundaryPixel& pixel : receivers.boundary) {
+    const bool is_candidate = (pixel.lights & bit) != 0;
+    facing.push_back(is_candidate ? FacingOf(pixel, light, receivers.options.min_cos_light)
+                                  : Facing::kTowards);
+  }
+  const Terminators terminators(receivers, bit, facing);
+  for (size_t i = 0; i < receivers.boundary.size(); ++i) {
+    const BoundaryPixel& pixel = receivers.boundary[i];
     if ((pixel.lights & bit) == 0) continue;
-    const Eigen::Vector3d to_light = light.kind == Light::Kind::kPoint
-                                         ? Eigen::Vector3d(light.position - pixel.position)
-                                         : towards_sun;
-    const double facing = pixel.normal.dot(to_light);
-    if (facing <= 0.0) {
+    if (facing[i] == Facing::kAway ||
+        (!receivers.options.use_terminators && terminators.Has(pixel))) {
       ++samples.counts.facing_away;
       continue;
     }
-    // Also false for a light at the receiver, and for normals that are not finite.
-    if (pixel.edge_on_to_eye || !(facing > receivers.options.min_cos_light * to_light.norm())) {
+    if (facing[i] == Facing::kEdgeOn) {
       ++samples.counts.edge_on;
       continue;
     }
@@ -83,12 +128,7 @@ Samples SelectSamples(const Receivers& receivers,
     samples.d_x.push_back(pixel.d_x);
     samples.d_y.push_back(pixel.d_y);
     if (with_edge_normals) {
-      const Eigen::Vector2d normal = ShadowEdgeNormal(receivers.readback,
-                                                      receivers.affine_depth,
-                                                      light.shadow_bit,
-                                                      receivers.options.edge_window,
-                                                      pixel.x,
-                                                      pixel.y);
+      const Eigen::Vector2d normal = edge_normals.At(pixel.x, pixel.y);
       samples.edge_normal_x.push_back(normal.x());
       samples.edge_normal_y.push_back(normal.y());
     }

@@ -45,9 +45,4 @@ Samples SelectSamples(const Receivers& receivers,
                       const Eigen::Matrix3d& normalized_from_ray,
                       bool with_edge_normals);
 
-// Unit normal, from lit to shadowed, of the edge of `bit` near a pixel: the gradient of the shadow
-// bit smoothed over the (2 window + 1)^2 pixels around it, surfaces only. 0 if there is none.
-Eigen::Vector2d ShadowEdgeNormal(
-    const Readback& readback, const AffineDepth& affine_depth, int bit, int window, int x, int y);
-
 }  // namespace lightfit

@@ -125,10 +125,17 @@ absl::StatusOr<Summary> MergeSummaries(const Summary& a, const Summary& b, const
     return absl::InvalidArgumentError(
         "summaries of different metrics do not add: summarise both with the same FitOptions");
   }
+  const bool both_have_samples = a.counts.used > 0 && b.counts.used > 0;
+  if (both_have_samples && (a.footprint_sum > 0.0) != (b.footprint_sum > 0.0)) {
+    return absl::InvalidArgumentError(
+        "summaries of an L1 and a squared metric do not add: summarise both with the same "
+        "FitOptions");
+  }
   absl::StatusOr<RayCover> cover = MergeCovers(a.cover, b.cover, light);
   if (!cover.ok()) return cover.status();
   Summary merged;
   merged.metric = a.metric;
+  merged.footprint_sum = a.footprint_sum + b.footprint_sum;
   merged.total_weight = a.total_weight + b.total_weight;
   merged.counts = AddCounts(a.counts, b.counts);
   const auto moved = [&cover](const Summary& summary) {

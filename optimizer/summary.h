@@ -52,6 +52,10 @@ struct Summary {
   EnergyTensor tensor;  // in the cover's normalised rays
   MetricWeights metric;
   double total_weight = 0.0;
+  // L1 metrics: the weighted sum of what the samples were weighted by one over, their footprints,
+  // so that sqrt(energy * footprint_sum) bounds the sum of footprints from above, and equals it
+  // where they are all in proportion (Cauchy & Schwarz). Else 0.
+  double footprint_sum = 0.0;
   SampleCounts counts;
   RayCover cover;
 };

@@ -4,6 +4,8 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "tests/testing/matchers.h"
 #include "tests/testing/random_cases.h"
@@ -118,6 +120,74 @@ TEST_P(MapFromWorldTest, OneDepthIsWidened) {
   EXPECT_TRUE(map_from_world.allFinite());
   EXPECT_GT(map_from_world.row(2).norm(), 0.0);
   EXPECT_NEAR((map_from_world * receiver).hnormalized().z(), 0.0, 1e-6);
+}
+
+// MapFromRay() is in the frame of RayFromWorld(light), whatever frame the matrix was made in.
+TEST_P(MapFromWorldTest, MapFromRayFindsTheHomographyAgain) {
+  Random random(45);
+  for (int i = 0; i < 200; ++i) {
+    const MapCase map = RandomMapCase(random, GetParam());
+    const absl::StatusOr<Eigen::Matrix3d> map_from_ray = MapFromRay(map.map_from_world, map.light);
+    ASSERT_THAT(map_from_ray, testing::IsOk());
+    const Eigen::Matrix<double, 3, 4> ray_from_world = RayFromWorld(map.light);
+    for (const Eigen::Vector3d& receiver : map.receivers) {
+      const Eigen::Vector4d expected = map.map_from_world * receiver.homogeneous();
+      const Eigen::Vector3d place = *map_from_ray * (ray_from_world * receiver.homogeneous());
+      // A lamp at 1e4 sizes cancels four digits; texels are of order 10.
+      EXPECT_LE((place.hnormalized() - expected.head<2>() / expected.w()).norm(), 1e-8);
+      EXPECT_LE(testing::RelativeError(place.z(), expected.w()), 1e-8);  // sign and size of w
+    }
+  }
+}
+
+TEST_P(MapFromWorldTest, MapFromRayAcceptsSinglePrecision) {
+  Random random(46);
+  for (int i = 0; i < 100; ++i) {
+    const MapCase map = RandomMapCase(random, GetParam());
+    const Eigen::Matrix4d rounded = map.map_from_world.cast<float>().cast<double>();
+    EXPECT_THAT(MapFromRay(rounded, map.light), testing::IsOk());
+  }
+}
+
+TEST_P(MapFromWorldTest, MapFromRayRefusesAnotherLight) {
+  Random random(47);
+  for (int i = 0; i < 100; ++i) {
+    const MapCase map = RandomMapCase(random, GetParam());
+    const Light::Kind other_kind =
+        GetParam() == Light::Kind::kPoint ? Light::Kind::kDirectional : Light::Kind::kPoint;
+    for (const Light::Kind kind : {GetParam(), other_kind}) {
+      const Light other = RandomMapCase(random, kind).light;
+      // A lamp is at least two sizes away and a thousandth off is another lamp.
+      EXPECT_THAT(
+          MapFromRay(map.map_from_world, other),
+          testing::StatusIs(absl::StatusCode::kInvalidArgument, ::testing::HasSubstr(other.name)));
+    }
+    EXPECT_THAT(MapFromRay(map.map_from_world.transpose(), map.light),
+                testing::StatusIs(absl::StatusCode::kInvalidArgument, ::testing::_));
+  }
+}
+
+TEST_P(MapFromWorldTest, MapFromRayRefusesWhatIsNotFiniteOrSingular) {
+  Random random(48);
+  const MapCase map = RandomMapCase(random, GetParam());
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    Eigen::Matrix4d matrix = map.map_from_world;
+    matrix(0, 1) = bad;
+    EXPECT_THAT(
+        MapFromRay(matrix, map.light),
+        testing::StatusIs(absl::StatusCode::kInvalidArgument, ::testing::HasSubstr("not finite")));
+  }
+  Eigen::Matrix4d flat = map.map_from_world;
+  flat.row(1) = 2.0 * flat.row(0);
+  EXPECT_THAT(
+      MapFromRay(flat, map.light),
+      testing::StatusIs(absl::StatusCode::kInvalidArgument, ::testing::HasSubstr("singular")));
+  EXPECT_THAT(MapFromRay(Eigen::Matrix4d::Zero(), map.light),
+              testing::StatusIs(absl::StatusCode::kInvalidArgument, ::testing::_));
+  Light light = map.light;
+  (light.kind == Light::Kind::kPoint ? light.position : light.direction).x() = std::nan("");
+  EXPECT_THAT(MapFromRay(map.map_from_world, light),
+              testing::StatusIs(absl::StatusCode::kInvalidArgument, ::testing::_));
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds,

@@ -10,6 +10,7 @@
 #include "geometry/convex_hull.h"
 #include "optimizer/cover.h"
 #include "optimizer/fit.h"
+#include "optimizer/footprint_image.h"
 #include "optimizer/receivers.h"
 #include "optimizer/samples.h"
 #include "tests/testing/gradient_check.h"
@@ -28,13 +29,14 @@ constexpr MapSize kMap = {512, 256};
 class Algorithm1 {
  public:
   Algorithm1(const Readback& readback, const Light& light) {
-    const Receivers receivers = *FindReceivers(readback, 1u << light.shadow_bit, {});
+    const Receivers receivers =
+        *FindReceivers(readback, 1u << light.shadow_bit, FitOptions::AsPublished().samples);
     samples_ = SelectSamples(receivers, light, Eigen::Matrix3d::Identity(), false);
     const std::vector<Eigen::Vector3d> positions = *ReceiverPositions(readback);
     for (const Eigen::Vector3d& position : positions) {
       rays_.push_back(RayFromWorld(light) * position.homogeneous());
     }
-    const RayCover cover = *CoverReceivers(receivers, light);
+    const RayCover cover = *CoverReceivers(receivers, light, Cover::kReceivers);
     mean_ray_ = cover.mean_ray;
     // The limit of the warp: w of a ray against w in the middle of the rays, both at depth 1.
     middle_ = cover.normalized_from_ray.inverse().col(2);
@@ -208,6 +210,8 @@ TEST(AsPublished, SampleBySampleEqualsFromTheSummary) {
 TEST(AsPublished, IsThePapersChoices) {
   const FitOptions options = FitOptions::AsPublished();
   EXPECT_EQ(options.metric, Metric::kL2);
+  EXPECT_EQ(options.cover, Cover::kReceivers);
+  EXPECT_FALSE(options.samples.use_outlines);
   EXPECT_EQ(options.search, Search::kRotationLineSearch);
   EXPECT_EQ(options.affine, Affine::kMinAreaRectangle);
   EXPECT_EQ(options.ray_space, RaySpace::kLightSpace);

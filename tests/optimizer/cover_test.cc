@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "geometry/convex_hull.h"
+#include "optimizer/footprint_image.h"
 #include "tests/testing/matchers.h"
 #include "tests/testing/plane_readback.h"
 #include "tests/testing/test_scene.h"
@@ -42,7 +43,7 @@ void ForEachCover(const Check& check) {
     const TestScene scene(seed, 6, 160, 100);
     const Receivers receivers = *FindReceivers(scene.View(), 0x3f, {});
     for (const Light& light : scene.lights) {
-      const absl::StatusOr<RayCover> cover = CoverReceivers(receivers, light);
+      const absl::StatusOr<RayCover> cover = CoverReceivers(receivers, light, Cover::kReceivers);
       ASSERT_THAT(cover, IsOk()) << light.name << ", seed " << seed;
       SCOPED_TRACE(light.name);
       check(light, receivers, *cover);

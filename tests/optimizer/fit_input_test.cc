@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "optimizer/fit.h"
+#include "optimizer/footprint_image.h"
 #include "tests/testing/matchers.h"
 #include "tests/testing/plane_readback.h"
 #include "tests/testing/test_scene.h"
@@ -15,7 +16,7 @@ namespace {
 
 using ::testing::AllOf;
 using testing::ExpectAllFinite;
-using testing::ExpectCoversReceivers;
+using testing::ExpectCovers;
 using testing::FloorReadback;
 using ::testing::HasSubstr;
 using testing::IsOk;
@@ -45,7 +46,7 @@ TEST(FitLight, FitsTheDisc) {
     const auto matrix = FitLight(readback.View(), light, kMap);
     ASSERT_THAT(matrix, IsOk());
     ExpectAllFinite(*matrix);
-    ExpectCoversReceivers(*matrix, readback.View());
+    ExpectCovers(*matrix, readback.View(), light);
   }
 }
 
@@ -59,7 +60,7 @@ TEST(FitLight, IgnoresAndCountsSinglePixelsOfInvalidDepth) {
       EXPECT_EQ(matrix->samples.receivers, 40 * 30 - 4);
       EXPECT_EQ(matrix->samples.invalid_depth, bad == kInfinity ? 0 : 4) << bad;
       ExpectAllFinite(*matrix);
-      ExpectCoversReceivers(*matrix, readback.View());
+      ExpectCovers(*matrix, readback.View(), light);
     }
   }
 }
@@ -95,7 +96,7 @@ TEST(FitLight, WithoutShadowBoundaryThereIsNothingToFit) {
     ASSERT_THAT(matrix, IsOk());
     EXPECT_EQ(matrix->energy, 0.0);
     ExpectAllFinite(*matrix);
-    ExpectCoversReceivers(*matrix, readback.View());
+    ExpectCovers(*matrix, readback.View(), kSun);
   }
 }
 
@@ -116,7 +117,7 @@ TEST(FitLight, FewSamplesAreFittedOnlyWhenAskedFor) {
       const auto matrix = FitLight(readback.View(), light, kMap, options);
       ASSERT_THAT(matrix, IsOk());
       ExpectAllFinite(*matrix);
-      ExpectCoversReceivers(*matrix, readback.View());
+      ExpectCovers(*matrix, readback.View(), light);
     }
   }
 }
@@ -132,7 +133,7 @@ TEST(FitLight, SamplesOnALineAreFitted) {
         const auto matrix = FitLight(readback.View(), light, kMap, options);
         ASSERT_THAT(matrix, IsOk());
         ExpectAllFinite(*matrix);
-        ExpectCoversReceivers(*matrix, readback.View());
+        ExpectCovers(*matrix, readback.View(), light);
       }
     }
   }
@@ -187,10 +188,11 @@ TEST(FitLight, RejectsSingularCamera) {
 // Above the floor, in the picture: the receivers are all below it, and one map does.
 TEST(FitLight, LightInsideTheViewFrustumIsFitted) {
   const PlaneReadback readback = Disc();
-  const auto matrix = FitLight(readback.View(), Light::Point("lamp", {0.0, -0.3, 0.4}), kMap);
+  const Light lamp = Light::Point("lamp", {0.0, -0.3, 0.4});
+  const auto matrix = FitLight(readback.View(), lamp, kMap);
   ASSERT_THAT(matrix, IsOk());
   ExpectAllFinite(*matrix);
-  ExpectCoversReceivers(*matrix, readback.View());
+  ExpectCovers(*matrix, readback.View(), lamp);
 }
 
 TEST(FitLight, LightExactlyAtAReceiverIsRefused) {
@@ -229,7 +231,7 @@ TEST(FitLight, FitsTheSmallestMap) {
   const PlaneReadback readback = Disc();
   const auto matrix = FitLight(readback.View(), kSun, {1, 1});
   ASSERT_THAT(matrix, IsOk());
-  ExpectCoversReceivers(*matrix, readback.View());
+  ExpectCovers(*matrix, readback.View(), kSun);
 }
 
 TEST(FitLight, RejectsBadLights) {
@@ -256,12 +258,8 @@ TEST(FitLights, ABadLightDoesNotStopTheOthers) {
 
 TEST(Fit, RefusesWhatNeedsTheSamples) {
   const PlaneReadback readback = Disc();
-  FitOptions options;
-  options.metric = Metric::kL1;
-  const auto summary = Summarize(readback.View(), kSun, options);
+  const auto summary = Summarize(readback.View(), kSun, FitOptions::AsPublished());
   ASSERT_THAT(summary, IsOk());
-  EXPECT_THAT(Fit(*summary, kSun, kMap, options),
-              StatusIs(kInvalid, HasSubstr("options.metric: the L1 metrics need the samples")));
   EXPECT_THAT(Fit(*summary, kSun, kMap, FitOptions::AsPublished()),
               StatusIs(kInvalid, HasSubstr("options.sample_by_sample")));
 }

@@ -29,6 +29,22 @@ TEST(ValidateFitOptions, AcceptsDefaultsAndAsPublished) {
   EXPECT_THAT(ValidateFitOptions(FitOptions::AsPublished()), IsOk());
 }
 
+TEST(FitOptions, DefaultsAreFootprintsAcrossTheEdgeWithTheShadowsInTheMap) {
+  const FitOptions options;
+  EXPECT_EQ(options.metric, Metric::kL1AcrossEdge);
+  EXPECT_EQ(options.cover, Cover::kShadowed);
+  EXPECT_EQ(options.search, Search::kGlobal);
+  EXPECT_EQ(options.affine, Affine::kMinEnergyParallelogram);
+  EXPECT_TRUE(options.samples.use_outlines);
+}
+
+TEST(IsL1, TellsFootprintsFromSquaredOnes) {
+  EXPECT_TRUE(IsL1(Metric::kL1));
+  EXPECT_TRUE(IsL1(Metric::kL1AcrossEdge));
+  EXPECT_FALSE(IsL1(Metric::kL2));
+  EXPECT_FALSE(IsL1(Metric::kL2AcrossEdge));
+}
+
 TEST(ValidateFitOptions, RejectsSampleOptionsOutOfRange) {
   for (const double bad : {0.0, -1.0, 1.5, kNaN}) {
     ExpectRejected("options.samples.max_depth_bend = ",

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <thread>
 
+#include "optimizer/footprint_image.h"
 #include "tests/testing/matchers.h"
 #include "tests/testing/test_scene.h"
 
@@ -14,10 +15,13 @@ namespace lightfit {
 namespace {
 
 using testing::ExpectAllFinite;
-using testing::ExpectCoversReceivers;
+using testing::ExpectCovers;
+using ::testing::HasSubstr;
 using testing::IsOk;
 using testing::MatrixNear;
 using testing::RelativeError;
+using testing::SquaredFootprints;
+using testing::StatusIs;
 using testing::TestScene;
 
 constexpr MapSize kMap = {1024, 512};
@@ -46,9 +50,10 @@ std::vector<Choice> Choices() {
   });
   add("skewed", [](FitOptions& o) { o.affine = Affine::kSkewedRectangle; });
   add("rectangle", [](FitOptions& o) { o.affine = Affine::kMinAreaRectangle; });
-  add("across edge", [](FitOptions& o) { o.metric = Metric::kL2AcrossEdge; });
+  add("squared", [](FitOptions& o) { o = SquaredFootprints(); });
+  add("squared across edge", [](FitOptions& o) { o.metric = Metric::kL2AcrossEdge; });
   add("L1", [](FitOptions& o) { o.metric = Metric::kL1; });
-  add("L1 across edge", [](FitOptions& o) { o.metric = Metric::kL1AcrossEdge; });
+  add("all receivers", [](FitOptions& o) { o.cover = Cover::kReceivers; });
   add("margins", [](FitOptions& o) {
     o.margin_percent = 5.0;
     o.margin_texels = 8.0;
@@ -56,21 +61,23 @@ std::vector<Choice> Choices() {
   return choices;
 }
 
-TEST(FitLight, EveryReceiverLiesInsideTheMap) {
+TEST(FitLight, EverySurfaceToCoverLiesInsideTheMap) {
   for (const Choice& choice : Choices()) {
     SCOPED_TRACE(choice.name);
     int num_fitted = 0;
     for (uint64_t seed = 1; seed <= 6; ++seed) {
       SCOPED_TRACE(seed);
       const TestScene scene(seed, 6);
-      for (const auto& matrix : FitLights(scene.View(), scene.lights, kMap, choice.options)) {
+      const auto matrices = FitLights(scene.View(), scene.lights, kMap, choice.options);
+      for (size_t i = 0; i < matrices.size(); ++i) {
+        const auto& matrix = matrices[i];
         if (!matrix.ok()) {
           EXPECT_EQ(matrix.status().code(), absl::StatusCode::kFailedPrecondition)
               << matrix.status();
           continue;
         }
         ExpectAllFinite(*matrix);
-        ExpectCoversReceivers(*matrix, scene.View());
+        ExpectCovers(*matrix, scene.View(), scene.lights[i], choice.options.cover);
         EXPECT_LE(matrix->energy, matrix->energy_start * (1.0 + 1e-12)) << matrix->BriefReport();
         ++num_fitted;
       }
@@ -103,7 +110,7 @@ TEST(FitLight, WIsOfTheOrderOfOneOrOfTheDistance) {
   const TestScene scene(3, 6);
   const auto positions = *ReceiverPositions(scene.View());
   for (const Light& light : scene.lights) {
-    const auto matrix = FitLight(scene.View(), light, kMap);
+    const auto matrix = FitLight(scene.View(), light, kMap, SquaredFootprints());
     if (!matrix.ok()) continue;
     double low = 1e300, high = 0.0;
     for (const Eigen::Vector3d& position : positions) {
@@ -156,9 +163,9 @@ TEST(FitLights, ServesThirtyTwoLights) {
   const auto matrices = FitLights(scene.View(), scene.lights, kMap);
   ASSERT_EQ(matrices.size(), 32u);
   int num_fitted = 0;
-  for (const auto& matrix : matrices) {
-    if (!matrix.ok()) continue;
-    ExpectCoversReceivers(*matrix, scene.View());
+  for (size_t i = 0; i < matrices.size(); ++i) {
+    if (!matrices[i].ok()) continue;
+    ExpectCovers(*matrices[i], scene.View(), scene.lights[i]);
     ++num_fitted;
   }
   EXPECT_GE(num_fitted, 28);
@@ -188,14 +195,16 @@ TEST(FitLights, RunsFromSeveralThreadsAtOnce) {
   }
 }
 
+// The squared metrics; for the others see fit_l1_test.cc.
 TEST(Fit, FromTheSummaryEqualsFitLight) {
   for (uint64_t seed = 1; seed <= 6; ++seed) {
     const TestScene scene(seed, 6);
     for (const Light& light : scene.lights) {
-      const auto whole = FitLight(scene.View(), light, kMap);
-      const auto summary = Summarize(scene.View(), light);
+      const FitOptions options = SquaredFootprints();
+      const auto whole = FitLight(scene.View(), light, kMap, options);
+      const auto summary = Summarize(scene.View(), light, options);
       ASSERT_THAT(summary, IsOk());
-      const auto from_summary = Fit(*summary, light, kMap);
+      const auto from_summary = Fit(*summary, light, kMap, options);
       ASSERT_EQ(whole.ok(), from_summary.ok());
       if (!whole.ok()) continue;
       EXPECT_TRUE(SameBytes(whole->map_from_world, from_summary->map_from_world));
@@ -207,28 +216,39 @@ TEST(Fit, FromTheSummaryEqualsFitLight) {
 }
 
 TEST(Fit, RefusesAMetricThatTheSummaryWasNotSummedWith) {
+  constexpr Metric kMetrics[] = {
+      Metric::kL2, Metric::kL2AcrossEdge, Metric::kL1, Metric::kL1AcrossEdge};
   const TestScene scene(1, 6);
-  const auto summary = Summarize(scene.View(), scene.lights[0]);
-  ASSERT_THAT(summary, IsOk());
-  FitOptions across_edge;
-  across_edge.metric = Metric::kL2AcrossEdge;
-  const auto matrix = Fit(*summary, scene.lights[0], kMap, across_edge);
-  EXPECT_EQ(matrix.status().code(), absl::StatusCode::kInvalidArgument);
-  EXPECT_NE(matrix.status().message().find("options.metric"), absl::string_view::npos);
+  for (const Metric summed : kMetrics) {
+    FitOptions options;
+    options.metric = summed;
+    const auto summary = Summarize(scene.View(), scene.lights[0], options);
+    ASSERT_THAT(summary, IsOk());
+    for (const Metric asked_for : kMetrics) {
+      options.metric = asked_for;
+      const auto matrix = Fit(*summary, scene.lights[0], kMap, options);
+      if (asked_for == summed) {
+        EXPECT_THAT(matrix, IsOk());
+      } else {
+        EXPECT_THAT(matrix,
+                    StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("options.metric")));
+      }
+    }
+  }
 }
 
 // math.md (3): energy = 2 used rms^2, with the footprint's definition in light_matrix.h.
 TEST(FitLight, RmsFollowsFromTheEnergy) {
   const TestScene scene(8, 6);
   for (const Light& light : scene.lights) {
-    const auto matrix = FitLight(scene.View(), light, kMap);
+    const auto matrix = FitLight(scene.View(), light, kMap, SquaredFootprints());
     if (!matrix.ok()) continue;
     const double from_energy = std::sqrt(0.5 * matrix->energy / matrix->samples.used);
     EXPECT_LE(RelativeError(matrix->footprint.rms, from_energy), 1e-9);
     EXPECT_LE(matrix->footprint.median, matrix->footprint.p99);
     EXPECT_LE(matrix->footprint.p99, matrix->footprint.worst);
     EXPECT_LE(matrix->footprint.rms, matrix->footprint.worst);
-    FitOptions quick;
+    FitOptions quick = SquaredFootprints();
     quick.compute_statistics = false;
     const auto without = FitLight(scene.View(), light, kMap, quick);
     ASSERT_THAT(without, IsOk());

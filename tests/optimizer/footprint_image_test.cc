@@ -64,8 +64,14 @@ TEST(FootprintImage, IsZeroWhereNoTexelIsSeen) {
   const auto image = FootprintImage(readback.View(), sun, matrix->map_from_world);
   ASSERT_THAT(image, IsOk());
   EXPECT_EQ((*image)[readback.Index(10, 10)], 0.0f);
-  EXPECT_EQ((*image)[readback.Index(11, 10)], 0.0f);  // beside the background
-  EXPECT_EQ((*image)[readback.Index(0, 5)], 0.0f);    // the border has no derivatives
+  EXPECT_GT((*image)[readback.Index(11, 10)], 0.0f);  // beside the background, an outline
+  SampleOptions no_outlines;
+  no_outlines.use_outlines = false;
+  const auto inner = FootprintImage(readback.View(), sun, matrix->map_from_world, no_outlines);
+  ASSERT_THAT(inner, IsOk());
+  EXPECT_EQ((*inner)[readback.Index(11, 10)], 0.0f);
+  EXPECT_EQ((*inner)[readback.Index(20, 15)], (*image)[readback.Index(20, 15)]);
+  EXPECT_EQ((*image)[readback.Index(0, 5)], 0.0f);  // the border has no derivatives
   EXPECT_GT((*image)[readback.Index(20, 15)], 0.0f);
   const auto from_below = FootprintImage(readback.View(), below, matrix->map_from_world);
   ASSERT_THAT(from_below, IsOk());

@@ -64,6 +64,7 @@ TEST(DepthGradientAt, IsExactOnPlanesForEveryKind) {
       const PlaneReadback readback(view.camera, kind, view.normal, view.offset);
       const AffineDepth affine_depth(view.camera, kind);
       SampleOptions options;
+      options.use_outlines = false;
       options.max_depth_bend = 1.0;
       for (int k = 0; k < 10; ++k) {
         const int x = random.Int(1, view.camera.width - 2),
@@ -93,12 +94,14 @@ TEST(DepthGradientAt, AcceptsPlanesOfEveryKindAlmostEverywhere) {
     for (const DepthKind kind : kAllKinds) {
       const PlaneReadback readback(view.camera, kind, view.normal, view.offset);
       const AffineDepth affine_depth(view.camera, kind);
+      SampleOptions options;
+      options.use_outlines = false;
       int num_accepted = 0;
       for (int y = 1; y + 1 < view.camera.height; ++y) {
         for (int x = 1; x + 1 < view.camera.width; ++x) {
           DepthGradient gradient;
-          num_accepted +=
-              static_cast<int>(DepthGradientAt(readback.View(), affine_depth, {}, x, y, &gradient));
+          num_accepted += static_cast<int>(
+              DepthGradientAt(readback.View(), affine_depth, options, x, y, &gradient));
         }
       }
       const int num_inner = (view.camera.width - 2) * (view.camera.height - 2);
@@ -126,33 +129,39 @@ TEST(SurfaceNormal, IsThePlanesNormalTowardsTheEye) {
   }
 }
 
-// Every grid covers the image; a tile's box bounds its receivers.
-TEST(FindReceivers, TilesOfEveryGridBoundTheirReceivers) {
+TEST(FindReceivers, TilesAreThoseOfAllReceivers) {
+  const testing::TestScene scene(2, 1, 323, 177);
+  const Receivers receivers = *FindReceivers(scene.View(), 1u, {});
+  EXPECT_EQ(receivers.counts[0].invalid_depth, 0);
+  EXPECT_EQ(receivers.tiles.filter.shadow_mask, 0u);
+  EXPECT_EQ(receivers.tiles.num_surfaces, receivers.counts[0].receivers);
+  EXPECT_EQ(receivers.tiles.num_surfaces + receivers.tiles.num_background, 323 * 177);
+}
+
+// With outlines every candidate on a surface is a boundary pixel but for those without a neighbour
+// along x or y; without them only those whose surface continues, which are among the others with
+// the same gradient.
+TEST(FindReceivers, OutlinesAddToTheBoundary) {
+  int64_t num_added = 0;
   for (uint64_t seed = 1; seed <= 4; ++seed) {
-    const testing::TestScene scene(seed, 1, 323, 177);
-    const Receivers receivers = *FindReceivers(scene.View(), 1u, {});
-    EXPECT_EQ(receivers.counts[0].invalid_depth, 0);
-    EXPECT_GE(receivers.tile_grids.size(), 2u);
-    for (const TileGrid& grid : receivers.tile_grids) {
-      ASSERT_EQ(grid.tiles.size(), static_cast<size_t>(grid.columns) * grid.rows);
-      int64_t num_receivers = 0;
-      int num_pixels = 0;
-      for (const DepthTile& tile : grid.tiles) {
-        num_pixels += (tile.x_end - tile.x_begin) * (tile.y_end - tile.y_begin);
-        int num_in_tile = 0, num_outside = 0;
-        receivers.ForEachReceiver(tile, [&](int x, int y, double d) {
-          ++num_in_tile;
-          num_outside += static_cast<int>(x < tile.x_begin || x >= tile.x_end || y < tile.y_begin ||
-                                          y >= tile.y_end || d < tile.d_min || d > tile.d_max);
-        });
-        EXPECT_EQ(num_in_tile, tile.num_receivers);
-        EXPECT_EQ(num_outside, 0);
-        num_receivers += num_in_tile;
-      }
-      EXPECT_EQ(num_pixels, 323 * 177);
-      EXPECT_EQ(num_receivers, receivers.counts[0].receivers);
+    const testing::TestScene scene(seed, 3);
+    const Receivers with = *FindReceivers(scene.View(), 7u, {});
+    const Receivers without = *FindReceivers(scene.View(), 7u, FitOptions::AsPublished().samples);
+    auto next = with.boundary.begin();
+    for (const BoundaryPixel& pixel : without.boundary) {
+      while (next != with.boundary.end() && (next->x != pixel.x || next->y != pixel.y)) ++next;
+      ASSERT_NE(next, with.boundary.end());
+      EXPECT_EQ(next->d_x, pixel.d_x);
+      EXPECT_EQ(next->d_y, pixel.d_y);
+      EXPECT_EQ(next->lights, pixel.lights);
+    }
+    num_added += static_cast<int64_t>(with.boundary.size() - without.boundary.size());
+    for (int bit = 0; bit < 3; ++bit) {
+      EXPECT_EQ(with.counts[bit].candidates, without.counts[bit].candidates);
+      EXPECT_LE(with.counts[bit].discontinuity, without.counts[bit].discontinuity / 10);
     }
   }
+  EXPECT_GE(num_added, 500);
 }
 
 TEST(FindReceivers, BoundaryIsTheSameWhateverOtherLightsAreAskedFor) {

@@ -20,9 +20,11 @@ using testing::PlaneReadback;
 
 const Eigen::Matrix3d kLightSpace = Eigen::Matrix3d::Identity();
 
-SampleCounts CountSamples(const PlaneReadback& readback, const Light& light) {
+SampleCounts CountSamples(const PlaneReadback& readback,
+                          const Light& light,
+                          const SampleOptions& options = FitOptions::AsPublished().samples) {
   const absl::StatusOr<Receivers> receivers =
-      FindReceivers(readback.View(), 1u << light.shadow_bit, {});
+      FindReceivers(readback.View(), 1u << light.shadow_bit, options);
   EXPECT_THAT(receivers, IsOk());
   const Samples samples = SelectSamples(*receivers, light, kLightSpace, false);
   EXPECT_EQ(samples.counts.used, static_cast<int64_t>(samples.size()));
@@ -60,6 +62,21 @@ TEST(SelectSamples, CountsBackgroundAndItsNeighbours) {
   EXPECT_EQ(counts.used, kNumCandidates - 4);
 }
 
+// By default the derivative comes from the side that continues.
+TEST(SelectSamples, UsesOutlinesUnlessToldNotTo) {
+  PlaneReadback readback = FloorWithVerticalEdge();
+  readback.depth[readback.Index(20, 15)] = 1e10f;
+  const SampleCounts beside_hole = CountSamples(readback, kSun, SampleOptions());
+  EXPECT_EQ(beside_hole.background, 1);
+  EXPECT_EQ(beside_hole.discontinuity, 0);
+  EXPECT_EQ(beside_hole.used, kNumCandidates - 1);
+  for (int y = 0; y < 30; ++y) {
+    for (int x = 20; x < 40; ++x) readback.depth[readback.Index(x, y)] *= 1.5f;
+  }
+  const SampleCounts at_step = CountSamples(readback, kSun, SampleOptions());
+  EXPECT_EQ(at_step.discontinuity, 0);
+}
+
 TEST(SelectSamples, CountsInvalidDepthAsBackground) {
   PlaneReadback readback = FloorWithVerticalEdge();
   readback.depth[readback.Index(20, 15)] = std::nanf("");
@@ -89,14 +106,55 @@ TEST(SelectSamples, CountsSurfacesFacingAway) {
   EXPECT_EQ(point_counts.facing_away, kNumCandidates);
 }
 
+// A ridge between two planes, nearest to the camera at column 20: light from the left leaves the
+// right side turned away. Shadow on the left ends there without an edge; within the left side it
+// has one.
+TEST(SelectSamples, TakesNoTerminatorForAnEdgeUnlessToldTo) {
+  PlaneReadback readback = FloorReadback();
+  for (int y = 0; y < 30; ++y) {
+    for (int x = 0; x < 40; ++x) {
+      const double d = 0.25 - 0.006 * std::abs(x + 0.5 - 20.0);
+      readback.depth[readback.Index(x, y)] = static_cast<float>(1.0 / d);
+    }
+  }
+  const Light from_left = Light::Directional("left", {1.0, 0.2, -0.2});
+  readback.Cast(0, [](int x, int) { return x < 20; });
+  SampleOptions options;
+  const SampleCounts terminator = CountSamples(readback, from_left, options);
+  EXPECT_EQ(terminator.candidates, kNumCandidates);
+  EXPECT_EQ(terminator.facing_away, kNumCandidates);
+  options.use_terminators = true;
+  const SampleCounts told_to = CountSamples(readback, from_left, options);
+  EXPECT_EQ(told_to.facing_away, kNumCandidates / 2);
+  EXPECT_EQ(told_to.used, kNumCandidates / 2);
+
+  // Half of the shadow taken away: its lower end, 19 columns of two rows, is an edge.
+  options.use_terminators = false;
+  readback.shadow_bits.assign(readback.depth.size(), 0);
+  readback.Cast(0, [](int x, int y) { return x < 20 && y < 15; });
+  const SampleCounts with_edge = CountSamples(readback, from_left, options);
+  EXPECT_EQ(with_edge.used, 2 * 19);
+}
+
 TEST(SelectSamples, CountsSurfacesEdgeOnToTheLight) {
-  // 0.01 of 0.02 (SampleOptions::min_cos_light) above the horizon.
+  // 0.01 of the published method's 0.02 (SampleOptions::min_cos_light) above the horizon.
   const SampleCounts counts =
       CountSamples(FloorWithVerticalEdge(), Light::Directional("dusk", {1.0, 0.0, -0.01}));
   EXPECT_EQ(counts.edge_on, kNumCandidates);
   const SampleCounts above =
       CountSamples(FloorWithVerticalEdge(), Light::Directional("dawn", {1.0, 0.0, -0.03}));
   EXPECT_EQ(above.used, kNumCandidates);
+}
+
+TEST(SelectSamples, TakesSurfacesNearlyEdgeOnToTheLightWhenAsked) {
+  SampleOptions options;
+  options.min_cos_light = 0.001;
+  const auto count = [&options](double height) {
+    return CountSamples(
+        FloorWithVerticalEdge(), Light::Directional("dusk", {1.0, 0.0, -height}), options);
+  };
+  EXPECT_EQ(count(0.01).used, kNumCandidates);
+  EXPECT_EQ(count(0.0005).edge_on, kNumCandidates);
 }
 
 TEST(SelectSamples, CountsSurfacesEdgeOnToTheEye) {
@@ -153,43 +211,6 @@ TEST(SelectSamples, KnowsEdgeNormalsOnlyWhenAsked) {
   for (size_t i = 0; i < samples.size(); ++i) {
     EXPECT_THAT(samples.At(i).edge_normal, MatrixNear(Eigen::Vector2d(1.0, 0.0), 0.1));
   }
-}
-
-// On straight edges the smoothed bit's gradient is the edge's normal, from lit to shadowed, within
-// what a window of 5 x 5 binary pixels can tell.
-TEST(ShadowEdgeNormal, FollowsStraightEdgesAtAnyAngle) {
-  constexpr double kToleranceRad = 0.25;
-  PlaneReadback readback = FloorReadback();
-  const AffineDepth affine_depth(readback.camera, readback.kind);
-  for (int degrees = 0; degrees < 360; degrees += 5) {
-    const double angle = degrees * M_PI / 180.0;
-    const Eigen::Vector2d normal(std::cos(angle), std::sin(angle));
-    readback.shadow_bits.assign(readback.depth.size(), 0);
-    readback.Cast(
-        3, [&](int x, int y) { return normal.dot(Eigen::Vector2d(x - 20.2, y - 15.3)) > 0.0; });
-    const Eigen::Vector2d found = ShadowEdgeNormal(readback.View(), affine_depth, 3, 2, 20, 15);
-    EXPECT_NEAR(found.norm(), 1.0, 1e-12);
-    EXPECT_LT(std::acos(std::min(1.0, found.dot(normal))), kToleranceRad) << degrees << " degrees";
-  }
-}
-
-TEST(ShadowEdgeNormal, IgnoresMissingSurfacesAndTheImagesBorder) {
-  PlaneReadback readback = FloorReadback();
-  const AffineDepth affine_depth(readback.camera, readback.kind);
-  readback.Cast(0, [](int x, int) { return x >= 1; });
-  for (int x = 0; x < 40; ++x) readback.depth[readback.Index(x, 16)] = std::nanf("");
-  EXPECT_THAT(ShadowEdgeNormal(readback.View(), affine_depth, 0, 2, 1, 15),
-              MatrixNear(Eigen::Vector2d(1.0, 0.0), 1e-9));
-}
-
-TEST(ShadowEdgeNormal, IsZeroWithoutAnEdge) {
-  PlaneReadback readback = FloorReadback();
-  const AffineDepth affine_depth(readback.camera, readback.kind);
-  EXPECT_EQ(ShadowEdgeNormal(readback.View(), affine_depth, 0, 2, 20, 15), Eigen::Vector2d(0, 0));
-  readback.Cast(0, [](int x, int y) { return x == 20 && y == 15; });  // a lone pixel: no direction
-  EXPECT_EQ(ShadowEdgeNormal(readback.View(), affine_depth, 0, 2, 20, 15), Eigen::Vector2d(0, 0));
-  readback.depth.assign(readback.depth.size(), 1e10f);  // no surface at all
-  EXPECT_EQ(ShadowEdgeNormal(readback.View(), affine_depth, 0, 2, 20, 15), Eigen::Vector2d(0, 0));
 }
 
 }  // namespace

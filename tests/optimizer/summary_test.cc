@@ -109,18 +109,20 @@ struct TwoFrames {
 
 // The samples of one frame in the coordinates of any cover.
 Samples SamplesIn(const SyntheticReadback& frame, const Light& light, const RayCover& cover) {
-  const Receivers receivers = *FindReceivers(frame.View(), 1u << light.shadow_bit, {});
+  const Receivers receivers =
+      *FindReceivers(frame.View(), 1u << light.shadow_bit, testing::SquaredFootprints().samples);
   return SelectSamples(receivers, light, cover.normalized_from_ray, /*with_edge_normals=*/false);
 }
 
 TEST(MergeSummaries, EqualsSummaryOfTheUnion) {
+  const FitOptions options = testing::SquaredFootprints();
   Random random(145);
   int num_merged = 0;
   for (uint64_t seed = 1; seed <= 10; ++seed) {
     const TwoFrames shot(seed);
     for (const Light& light : shot.lights) {
-      const auto a = Summarize(shot.frames[0].View(), light);
-      const auto b = Summarize(shot.frames[1].View(), light);
+      const auto a = Summarize(shot.frames[0].View(), light, options);
+      const auto b = Summarize(shot.frames[1].View(), light, options);
       if (!a.ok() || !b.ok()) continue;
       const auto merged = MergeSummaries(*a, *b, light);
       ASSERT_THAT(merged, IsOk());
@@ -143,12 +145,13 @@ TEST(MergeSummaries, EqualsSummaryOfTheUnion) {
 }
 
 TEST(MergeSummaries, Commutes) {
+  const FitOptions options = testing::SquaredFootprints();
   Random random(146);
   for (uint64_t seed = 1; seed <= 6; ++seed) {
     const TwoFrames shot(seed);
     for (const Light& light : shot.lights) {
-      const auto a = Summarize(shot.frames[0].View(), light);
-      const auto b = Summarize(shot.frames[1].View(), light);
+      const auto a = Summarize(shot.frames[0].View(), light, options);
+      const auto b = Summarize(shot.frames[1].View(), light, options);
       if (!a.ok() || !b.ok()) continue;
       const auto ab = MergeSummaries(*a, *b, light);
       const auto ba = MergeSummaries(*b, *a, light);
@@ -170,19 +173,25 @@ TEST(MergeSummaries, Commutes) {
 
 // Every ray of either cover lies inside the merged hull.
 TEST(MergeSummaries, CoversBoth) {
-  for (uint64_t seed = 1; seed <= 6; ++seed) {
-    const TwoFrames shot(seed);
-    for (const Light& light : shot.lights) {
-      const auto a = Summarize(shot.frames[0].View(), light);
-      const auto b = Summarize(shot.frames[1].View(), light);
-      if (!a.ok() || !b.ok()) continue;
-      const auto merged = MergeSummaries(*a, *b, light);
-      ASSERT_THAT(merged, IsOk());
-      const auto matrix = Fit(*merged, light, {512, 512});
-      if (!matrix.ok()) continue;
-      testing::ExpectCoversReceivers(*matrix, shot.frames[0].View());
-      testing::ExpectCoversReceivers(*matrix, shot.frames[1].View());
+  for (const FitOptions& options : {FitOptions(), testing::SquaredFootprints()}) {
+    int num_fitted = 0;
+    for (uint64_t seed = 1; seed <= 6; ++seed) {
+      SCOPED_TRACE(seed);
+      const TwoFrames shot(seed);
+      for (const Light& light : shot.lights) {
+        const auto a = Summarize(shot.frames[0].View(), light, options);
+        const auto b = Summarize(shot.frames[1].View(), light, options);
+        if (!a.ok() || !b.ok()) continue;
+        const auto merged = MergeSummaries(*a, *b, light);
+        ASSERT_THAT(merged, IsOk());
+        const auto matrix = Fit(*merged, light, {512, 512}, options);
+        if (!matrix.ok()) continue;
+        testing::ExpectCovers(*matrix, shot.frames[0].View(), light, options.cover);
+        testing::ExpectCovers(*matrix, shot.frames[1].View(), light, options.cover);
+        ++num_fitted;
+      }
     }
+    EXPECT_GE(num_fitted, 12);
   }
 }
 
@@ -191,7 +200,7 @@ TEST(MergeSummaries, RefusesDifferentMetrics) {
   const Light& sun = shot.lights[0];
   FitOptions across;
   across.metric = Metric::kL2AcrossEdge;
-  const auto a = Summarize(shot.frames[0].View(), sun);
+  const auto a = Summarize(shot.frames[0].View(), sun, testing::SquaredFootprints());
   const auto b = Summarize(shot.frames[1].View(), sun, across);
   ASSERT_THAT(a, IsOk());
   ASSERT_THAT(b, IsOk());

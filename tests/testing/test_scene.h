@@ -12,7 +12,8 @@
 #include <vector>
 
 #include "geometry/light.h"
-#include "optimizer/footprint_image.h"
+#include "optimizer/depth_tiles.h"
+#include "optimizer/fit_options.h"
 #include "optimizer/light_matrix.h"
 #include "optimizer/readback.h"
 #include "tests/testing/box_scene.h"
@@ -46,28 +47,54 @@ inline void ExpectAllFinite(const LightMatrix& matrix) {
   for (const TraceStep& step : matrix.trace) EXPECT_TRUE(std::isfinite(step.energy));
 }
 
-// 0 <= u <= width, 0 <= v <= height, 0 <= z <= 1 and w > 0 on every receiver.
-inline void ExpectCoversReceivers(const LightMatrix& matrix, const Readback& readback) {
+// The library's search on what Chong & Gortler minimise: squared footprints of their samples, with
+// all receivers in the map.
+inline FitOptions SquaredFootprints() {
+  FitOptions options;
+  options.samples = FitOptions::AsPublished().samples;
+  options.metric = Metric::kL2;
+  options.cover = Cover::kReceivers;
+  return options;
+}
+
+// What a fitted matrix owes the receivers. Those to cover have 0 <= u <= width, 0 <= v <= height,
+// 0 <= z <= 1 and w > 0; those that land in the map without need have z <= 1, or a map that was
+// cleared to 1 would shadow them.
+inline void ExpectCovers(const LightMatrix& matrix,
+                         const Readback& readback,
+                         const Light& light,
+                         Cover cover = FitOptions().cover) {
   constexpr double kTexelTolerance = 1e-6, kDepthTolerance = 1e-7;
-  const auto positions = ReceiverPositions(readback);
-  ASSERT_TRUE(positions.ok()) << positions.status();
-  double w_min = 1e300, z_min = 1e300, z_max = -1e300, outside = -1e300;
-  for (const Eigen::Vector3d& position : *positions) {
-    const Eigen::Vector4d map = matrix.map_from_world * position.homogeneous();
-    const Eigen::Vector3d texel = map.hnormalized();
-    w_min = std::min(w_min, map.w());
-    z_min = std::min(z_min, texel.z());
-    z_max = std::max(z_max, texel.z());
-    outside = std::max({outside,
-                        -texel.x(),
-                        -texel.y(),
-                        texel.x() - matrix.map.width,
-                        texel.y() - matrix.map.height});
+  const AffineDepth affine_depth(readback.camera, readback.depth_kind);
+  const Eigen::Matrix4d map_from_screen = matrix.map_from_world * readback.camera.WorldFromScreen();
+  const uint32_t mask = uint32_t{1} << light.shadow_bit;
+  const bool any_shadow =
+      BuildDepthTiles(readback, affine_depth, SurfaceFilter{mask}).num_surfaces > 0;
+  double w_min = 1e300, z_min = 1e300, z_max = -1e300, outside = -1e300, z_max_in_map = -1e300;
+  for (int y = 0; y < readback.height(); ++y) {
+    for (int x = 0; x < readback.width(); ++x) {
+      const size_t pixel = static_cast<size_t>(y) * readback.width() + x;
+      if (!affine_depth.IsSurface(readback.depth[pixel])) continue;
+      const Eigen::Vector4d map =
+          map_from_screen *
+          Eigen::Vector4d(x + 0.5, y + 0.5, affine_depth.At(x, y, readback.depth[pixel]), 1.0);
+      const Eigen::Vector3d texel = map.hnormalized();
+      const double texels_outside = std::max(
+          {-texel.x(), -texel.y(), texel.x() - matrix.map.width, texel.y() - matrix.map.height});
+      if (map.w() > 0.0 && texels_outside <= 0.0) z_max_in_map = std::max(z_max_in_map, texel.z());
+      const bool is_shadowed = (readback.shadow_bits[pixel] & mask) != 0;
+      if (cover == Cover::kShadowed && any_shadow && !is_shadowed) continue;
+      w_min = std::min(w_min, map.w());
+      z_min = std::min(z_min, texel.z());
+      z_max = std::max(z_max, texel.z());
+      outside = std::max(outside, texels_outside);
+    }
   }
   EXPECT_GT(w_min, 0.0) << matrix.light_name;
   EXPECT_LE(outside, kTexelTolerance) << matrix.light_name;
   EXPECT_GE(z_min, -kDepthTolerance) << matrix.light_name;
   EXPECT_LE(z_max, 1.0 + kDepthTolerance) << matrix.light_name;
+  EXPECT_LE(z_max_in_map, 1.0 + kDepthTolerance) << matrix.light_name;
 }
 
 }  // namespace lightfit::testing
