@@ -26,6 +26,12 @@ const Words<Metric>& MetricWords() {
   return words;
 }
 
+const Words<Cover>& CoverWords() {
+  static const auto& words =
+      *new Words<Cover>{{"shadowed", Cover::kShadowed}, {"receivers", Cover::kReceivers}};
+  return words;
+}
+
 const Words<DepthKind>& DepthKindWords() {
   static const auto& words =
       *new Words<DepthKind>{{"camera-z", DepthKind::kCameraZ},

@@ -19,6 +19,7 @@ using Words = std::vector<std::pair<std::string, Value>>;
 const Words<Search>& SearchWords();
 const Words<Affine>& AffineWords();
 const Words<Metric>& MetricWords();
+const Words<Cover>& CoverWords();
 const Words<DepthKind>& DepthKindWords();
 const Words<ClipConvention>& ClipWords();
 

@@ -1,23 +1,38 @@
 #include "cli/comparison.h"
 
 #include <chrono>
+#include <utility>
 
 #include "optimizer/fit.h"
 
 namespace lightfit {
 
+namespace {
+
+absl::StatusOr<JudgedMatrix> Judged(const Readback& readback,
+                                    const Light& light,
+                                    absl::StatusOr<LightMatrix> matrix,
+                                    const FitOptions& options) {
+  if (!matrix.ok()) return matrix.status();
+  absl::StatusOr<MatrixFigures> figures =
+      EvaluateMatrix(readback, light, matrix->map_from_world, matrix->map, options);
+  if (!figures.ok()) return figures.status();
+  return JudgedMatrix{*std::move(matrix), *std::move(figures)};
+}
+
+}  // namespace
+
 FitOptions FocusedOptions(const FitOptions& options) {
   FitOptions focused = options;
   focused.search = Search::kFocused;
   focused.affine = Affine::kMinAreaRectangle;
+  focused.cover = Cover::kReceivers;
   return focused;
 }
 
 FitOptions PublishedOptions(const FitOptions& options) {
   FitOptions published = FitOptions::AsPublished();
-  published.samples = options.samples;
-  published.metric = options.metric;
-  published.along_edge_share = options.along_edge_share;
+  published.samples.min_samples = options.samples.min_samples;
   published.margin_percent = options.margin_percent;
   published.margin_texels = options.margin_texels;
   return published;
@@ -32,10 +47,13 @@ Comparison Compare(const Readback& readback,
   absl::StatusOr<LightMatrix> final = FitLight(readback, light, map, options);
   const double time_ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
   if (!final.ok()) return FailedComparison(light, final.status());
+  const auto yardstick = [&](const FitOptions& yardstick_options) {
+    return Judged(readback, light, FitLight(readback, light, map, yardstick_options), options);
+  };
   return {light,
-          FitLight(readback, light, map, FocusedOptions(options)),
-          FitLight(readback, light, map, PublishedOptions(options)),
-          *std::move(final),
+          yardstick(FocusedOptions(options)),
+          yardstick(PublishedOptions(options)),
+          Judged(readback, light, std::move(final), options),
           time_ms};
 }
 

@@ -5,22 +5,28 @@
 
 #include "absl/status/statusor.h"
 #include "geometry/light.h"
+#include "optimizer/evaluate.h"
 #include "optimizer/fit_options.h"
 #include "optimizer/light_matrix.h"
 #include "optimizer/readback.h"
 
 namespace lightfit {
 
-struct Comparison {
-  Light light;
-  absl::StatusOr<LightMatrix> focused;    // the usual focused shadow map, without a warp
-  absl::StatusOr<LightMatrix> published;  // Chong and Gortler's Algorithm 1
-  absl::StatusOr<LightMatrix> final;      // the method asked for
-  double final_time_ms = 0;               // for this light on its own, read-back in memory
+// A matrix, and its figures by one measure for all: the metric and the samples asked for.
+struct JudgedMatrix {
+  LightMatrix matrix;
+  MatrixFigures figures;
 };
 
-// The yardsticks' options: the samples, the metric and the margin are those of `options`, so that
-// the energies can be compared.
+struct Comparison {
+  Light light;
+  absl::StatusOr<JudgedMatrix> focused;    // the usual focused shadow map, without a warp
+  absl::StatusOr<JudgedMatrix> published;  // Chong and Gortler's Algorithm 1
+  absl::StatusOr<JudgedMatrix> final;      // the method asked for
+  double final_time_ms = 0;                // for this light on its own, read-back in memory
+};
+
+// The yardsticks' options: with the margin of `options`, else as their authors have it.
 FitOptions FocusedOptions(const FitOptions& options);
 FitOptions PublishedOptions(const FitOptions& options);
 

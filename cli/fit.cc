@@ -32,7 +32,7 @@ absl::Status CheckOutputs(const FitFlags& flags) {
 void WarnAboutPixels(const std::vector<Comparison>& comparisons) {
   for (const Comparison& comparison : comparisons) {
     if (!comparison.final.ok()) continue;
-    const int64_t num_invalid = comparison.final->samples.invalid_depth;
+    const int64_t num_invalid = comparison.final->matrix.samples.invalid_depth;
     if (num_invalid > 0) {
       PrintWarning(absl::StrCat(num_invalid,
                                 num_invalid == 1 ? " pixel" : " pixels",
@@ -70,9 +70,14 @@ FitReport JsonReport(const FitFlags& flags,
   for (const Comparison& comparison : comparisons) {
     LightFit fit;
     fit.light = comparison.light;
-    fit.matrix = comparison.final;
-    if (comparison.focused.ok()) fit.energy_focused = comparison.focused->energy;
-    if (comparison.published.ok()) fit.energy_as_published = comparison.published->energy;
+    if (!comparison.final.ok()) {
+      fit.matrix = comparison.final.status();
+    } else {
+      fit.matrix = comparison.final->matrix;
+      fit.wrong_share = comparison.final->figures.wrong_share;
+    }
+    if (comparison.focused.ok()) fit.focused = comparison.focused->figures;
+    if (comparison.published.ok()) fit.as_published = comparison.published->figures;
     report.lights.push_back(std::move(fit));
   }
   return report;
@@ -115,7 +120,7 @@ Outcome FitAndDraw(const FitFlags& flags, const FitOptions& options, const FitIn
   if (draws) {
     progress.Begin("drawing");
     const PictureOptions picture = {
-        TitleOf(flags.readback_path), options.samples, MethodText(options)};
+        TitleOf(flags.readback_path), options.samples, ShortMethodText(options)};
     outcome.picture = DrawPicture(readback, outcome.comparisons, flags.map, picture, typeface);
   }
   return outcome;

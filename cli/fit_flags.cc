@@ -8,11 +8,11 @@
 #include "absl/strings/str_split.h"
 #include "cli/choices.h"
 #include "cli/suggest.h"
-#include "io/lights_file.h"
 
 namespace lightfit {
 namespace {
 
+constexpr char kMethodGroup[] = "Method";
 constexpr int kMaxMapSize = 65536;  // texels along one side
 
 constexpr char kExamples[] =
@@ -58,49 +58,13 @@ void DeclareInput(CLI::App* app, FitFlags* flags) {
   app->add_option("readback", flags->readback_path, "OpenEXR file with depth and shadow channels")
       ->required()
       ->type_name("READBACK.exr");
-  app->add_option("--lights", flags->lights_path, "JSON file with the lights")
-      ->type_name("FILE")
-      ->group(group);
-  app->add_option_function<std::vector<std::string>>(
-         "--light",
-         [flags](const std::vector<std::string>& texts) {
-           for (const std::string& text : texts) {
-             absl::StatusOr<Light> light = ParseLight(text);
-             if (!light.ok()) {
-               throw CLI::ValidationError("--light", std::string(light.status().message()));
-             }
-             flags->extra_lights.push_back(*std::move(light));
-           }
-         },
-         "A light: where it is, or the direction in which it travels")
-      ->type_name("NAME=point:X,Y,Z|NAME=sun:X,Y,Z")
-      ->expected(1)
-      ->take_all()
-      ->group(group);
+  DeclareLightFlags(app, &flags->lights, group);
   app->add_option("--only", flags->only, "Fit this light only (may be repeated)")
       ->type_name("LIGHT")
       ->expected(1)
       ->take_all()
       ->group(group);
-  AddChoice(app,
-            "--depth-kind",
-            DepthKindWords(),
-            &flags->depth_kind,
-            "What the depth channel holds [camera-z, or as the camera file says]")
-      ->group(group);
-  app->add_option("--depth-channel", flags->depth_channel, "Name of the depth channel [Z]")
-      ->type_name("CHANNEL")
-      ->group(group);
-  app->add_option("--shadow-channel",
-                  flags->shadow_channel_format,
-                  "Name of the shadow channels [shadow.{light}]")
-      ->type_name("FORMAT")
-      ->group(group);
-  app->add_option("--shadow-bits-channel",
-                  flags->shadow_bits_channel,
-                  "UINT channel that holds all shadows, light l in bit l")
-      ->type_name("CHANNEL")
-      ->group(group);
+  DeclareReadbackFlags(app, group, flags);
 }
 
 void DeclareCamera(CLI::App* app, FitFlags* flags) {
@@ -112,34 +76,7 @@ void DeclareCamera(CLI::App* app, FitFlags* flags) {
       ->type_name("N")
       ->check(CLI::NonNegativeNumber)
       ->group(group);
-  app->add_option_function<std::string>(
-         "--camera-convention",
-         [flags](const std::string& words) {
-           const absl::StatusOr<CameraConvention> convention = ParseCameraConvention(words);
-           if (!convention.ok()) {
-             throw CLI::ValidationError("--camera-convention",
-                                        std::string(convention.status().message()));
-           }
-           flags->camera_exr.convention = *convention;
-         },
-         "Who wrote worldToCamera and worldToNDC: openexr, mantra or pbrt; words such as "
-         "column-vectors,y-up change it [openexr]")
-      ->type_name("WORDS")
-      ->group(group);
-  app->add_option("--near", flags->camera_exr.near, "Near clip plane, world units (NDC depth only)")
-      ->type_name("DISTANCE")
-      ->check(CLI::PositiveNumber)
-      ->group(group);
-  app->add_option("--far", flags->camera_exr.far, "Far clip plane, world units (NDC depth only)")
-      ->type_name("DISTANCE")
-      ->check(CLI::PositiveNumber)
-      ->group(group);
-  app->add_option("--pixel-aspect",
-                  flags->camera_exr.pixel_aspect,
-                  "Width over height of a pixel [as the file says]")
-      ->type_name("RATIO")
-      ->check(CLI::PositiveNumber)
-      ->group(group);
+  DeclareCameraExrFlags(app, group, &flags->camera_exr);
 }
 
 void DeclareMap(CLI::App* app, FitFlags* flags) {
@@ -163,43 +100,14 @@ void DeclareMap(CLI::App* app, FitFlags* flags) {
 }
 
 void DeclareMethod(CLI::App* app, FitFlags* flags) {
-  const std::string group = "Method";
-  FitOptions* options = &flags->options;
-  CLI::Option* search = AddChoice(app,
-                                  "--search",
-                                  SearchWords(),
-                                  &options->search,
-                                  "How the projective axis is found [global]");
-  CLI::Option* affine = AddChoice(app,
-                                  "--affine",
-                                  AffineWords(),
-                                  &options->affine,
-                                  "How the map is laid around the receivers [parallelogram]");
-  search->group(group);
-  affine->group(group);
-  AddChoice(app,
-            "--metric",
-            MetricWords(),
-            &options->metric,
-            "What is summed over the shadow edges; -edge: across the edge only [l2]")
-      ->group(group);
+  DeclareMethodFlags(app, &flags->options);
   app->add_flag(
          "--as-published", flags->as_published, "Chong and Gortler's Algorithm 1 to the letter")
-      ->excludes(search)
-      ->excludes(affine)
-      ->group(group);
-  app->add_option("--margin-percent",
-                  options->margin_percent,
-                  "The map reaches this much beyond the receivers on every side [1]")
-      ->type_name("PERCENT")
-      ->check(CLI::Range(0.0, 100.0))
-      ->group(group);
-  app->add_option("--min-samples",
-                  options->samples.min_samples,
-                  "Fewer usable shadow-edge pixels than this are not fitted [8]")
-      ->type_name("COUNT")
-      ->check(CLI::PositiveNumber)
-      ->group(group);
+      ->excludes(app->get_option("--search"))
+      ->excludes(app->get_option("--affine"))
+      ->excludes(app->get_option("--metric"))
+      ->excludes(app->get_option("--cover"))
+      ->group(kMethodGroup);
 }
 
 void DeclareOutput(CLI::App* app, FitFlags* flags) {
@@ -215,6 +123,95 @@ void DeclareOutput(CLI::App* app, FitFlags* flags) {
 }
 
 }  // namespace
+
+void DeclareReadbackFlags(CLI::App* app, const std::string& group, FitFlags* flags) {
+  AddChoice(app,
+            "--depth-kind",
+            DepthKindWords(),
+            &flags->depth_kind,
+            "What the depth channel holds [camera-z, or as the camera file says]")
+      ->group(group);
+  app->add_option("--depth-channel", flags->depth_channel, "Name of the depth channel [Z]")
+      ->type_name("CHANNEL")
+      ->group(group);
+  app->add_option("--shadow-channel",
+                  flags->shadow_channel_format,
+                  "Name of the shadow channels [shadow.{light}]")
+      ->type_name("FORMAT")
+      ->group(group);
+  app->add_option("--shadow-bits-channel",
+                  flags->shadow_bits_channel,
+                  "UINT channel that holds all shadows, light l in bit l")
+      ->type_name("CHANNEL")
+      ->group(group);
+}
+
+void DeclareCameraExrFlags(CLI::App* app, const std::string& group, CameraExrOptions* camera) {
+  app->add_option_function<std::string>(
+         "--camera-convention",
+         [camera](const std::string& words) {
+           const absl::StatusOr<CameraConvention> convention = ParseCameraConvention(words);
+           if (!convention.ok()) {
+             throw CLI::ValidationError("--camera-convention",
+                                        std::string(convention.status().message()));
+           }
+           camera->convention = *convention;
+         },
+         "Who wrote worldToCamera and worldToNDC: openexr, mantra or pbrt; words such as "
+         "column-vectors,y-up change it [openexr]")
+      ->type_name("WORDS")
+      ->group(group);
+  app->add_option("--near", camera->near, "Near clip plane, world units (NDC depth only)")
+      ->type_name("DISTANCE")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+  app->add_option("--far", camera->far, "Far clip plane, world units (NDC depth only)")
+      ->type_name("DISTANCE")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+  app->add_option(
+         "--pixel-aspect", camera->pixel_aspect, "Width over height of a pixel [as the file says]")
+      ->type_name("RATIO")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+}
+
+void DeclareMethodFlags(CLI::App* app, FitOptions* options) {
+  AddChoice(
+      app, "--search", SearchWords(), &options->search, "How the projective axis is found [global]")
+      ->group(kMethodGroup);
+  AddChoice(app,
+            "--affine",
+            AffineWords(),
+            &options->affine,
+            "How the map is laid around what it covers [parallelogram]")
+      ->group(kMethodGroup);
+  AddChoice(app,
+            "--metric",
+            MetricWords(),
+            &options->metric,
+            "What is summed over the shadow edges; -edge: across the edge only [l1-edge]")
+      ->group(kMethodGroup);
+  AddChoice(app,
+            "--cover",
+            CoverWords(),
+            &options->cover,
+            "What the map has room for: shadowed surfaces, or all receivers in view; look-ups "
+            "outside find light [shadowed]")
+      ->group(kMethodGroup);
+  app->add_option("--margin-percent",
+                  options->margin_percent,
+                  "The map reaches this much beyond what it covers on every side [1]")
+      ->type_name("PERCENT")
+      ->check(CLI::Range(0.0, 100.0))
+      ->group(kMethodGroup);
+  app->add_option("--min-samples",
+                  options->samples.min_samples,
+                  "Fewer usable shadow-edge pixels than this are not fitted [8]")
+      ->type_name("COUNT")
+      ->check(CLI::PositiveNumber)
+      ->group(kMethodGroup);
+}
 
 void DeclareFitFlags(CLI::App* app, FitFlags* flags) {
   DeclareInput(app, flags);

@@ -11,8 +11,8 @@
 
 #include "absl/status/statusor.h"
 #include "absl/types/optional.h"
+#include "cli/light_flags.h"
 #include "geometry/clip.h"
-#include "geometry/light.h"
 #include "io/camera_exr.h"
 #include "optimizer/fit_options.h"
 
@@ -21,9 +21,8 @@ namespace lightfit {
 struct FitFlags {
   std::string readback_path;
 
-  std::string lights_path;
-  std::vector<Light> extra_lights;  // --light; replace those of the file by name
-  std::vector<std::string> only;    // names; empty: all
+  LightFlags lights;
+  std::vector<std::string> only;  // names; empty: all
 
   MapSize map = {1024, 1024};
   FitOptions options;
@@ -46,6 +45,12 @@ struct FitFlags {
 
 // Declares every option on `app`, to be parsed into `flags`, which must stay where it is.
 void DeclareFitFlags(CLI::App* app, FitFlags* flags);
+
+// Parts of it, for verbs that fit or read a read-back too: what its channels mean; what the
+// camera's attributes in its header mean; how it is fitted.
+void DeclareReadbackFlags(CLI::App* app, const std::string& group, FitFlags* flags);
+void DeclareCameraExrFlags(CLI::App* app, const std::string& group, CameraExrOptions* camera);
+void DeclareMethodFlags(CLI::App* app, FitOptions* options);
 
 // "1024x512"; both at least 1 and at most 65536.
 absl::StatusOr<MapSize> ParseMapSize(const std::string& text);

@@ -8,7 +8,6 @@
 #include "absl/strings/str_join.h"
 #include "cli/suggest.h"
 #include "io/camera_file.h"
-#include "io/lights_file.h"
 #include "optimizer/readback.h"
 
 namespace lightfit {
@@ -37,31 +36,13 @@ absl::StatusOr<std::vector<Light>> Chosen(const std::vector<Light>& lights,
 }
 
 absl::StatusOr<std::vector<Light>> LightsOf(const FitFlags& flags) {
-  std::vector<Light> lights;
-  if (!flags.lights_path.empty()) {
-    absl::StatusOr<std::vector<Light>> from_file = ReadLightsFile(flags.lights_path);
-    if (!from_file.ok()) return from_file.status();
-    lights = *std::move(from_file);
-  }
-  for (Light light : flags.extra_lights) {
-    const auto same = std::find_if(lights.begin(), lights.end(), [&light](const Light& other) {
-      return other.name == light.name;
-    });
-    if (same != lights.end()) {
-      light.shadow_bit = same->shadow_bit;
-      *same = light;
-    } else {
-      light.shadow_bit = static_cast<int>(lights.size());
-      lights.push_back(light);
-    }
-  }
-  if (lights.empty()) {
+  const absl::StatusOr<std::vector<Light>> lights = ReadLights(flags.lights);
+  if (!lights.ok()) return lights.status();
+  if (lights->empty()) {
     return absl::InvalidArgumentError(
         "no lights: want --lights FILE, or --light NAME=sun:X,Y,Z for one light");
   }
-  absl::Status status = ValidateLights(lights);
-  if (!status.ok()) return status;
-  return Chosen(lights, flags.only);
+  return Chosen(*lights, flags.only);
 }
 
 absl::StatusOr<ReadbackExrOptions> ReadbackOptionsOf(const FitFlags& flags) {

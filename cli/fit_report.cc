@@ -12,51 +12,52 @@ namespace {
 constexpr char kNoMatrix[] = "no matrix, see below";
 
 constexpr char kLegend[] =
-    "\nFootprint: how far one texel reaches on the screen, in read-back pixels; below 1 is finer.\n"
-    "Energy: footprints (l2: squared) summed over the used shadow-edge pixels; lower is better.\n"
-    "Gain: how many times lower the final energy is. Time: the final fit of that light alone.\n"
+    "\nWrong: shadow pixels that will be wrong, foretold, of all pixels of the image, with the\n"
+    "nearest texel and no fault of the bias. Fewer than: how many times fewer the final map has.\n"
+    "Footprint: how far one texel reaches on the screen at the shadow edges, in read-back pixels;\n"
+    "below 1 is finer. Time: the final fit of that light alone.\n"
     "Focused: the usual map around all that is visible. Published: Chong and Gortler's Algorithm "
     "1.\n";
 
-std::string RatioText(const absl::StatusOr<LightMatrix>& before, double energy_after) {
-  if (!before.ok()) return "-";
-  return energy_after > 0 ? absl::StrCat(FigureText(before->energy / energy_after), "x") : "-";
+std::string RatioText(const absl::StatusOr<JudgedMatrix>& before, const MatrixFigures& after) {
+  if (!before.ok() || !(after.wrong_share > 0.0)) return "-";
+  return absl::StrCat(FigureText(before->figures.wrong_share / after.wrong_share), "x");
 }
 
-std::string EnergyText(const absl::StatusOr<LightMatrix>& matrix) {
-  return matrix.ok() ? FigureText(matrix->energy) : "-";
+std::string WrongText(const absl::StatusOr<JudgedMatrix>& map) {
+  return map.ok() ? PercentText(map->figures.wrong_share) : "-";
 }
 
 Table FigureTable(const std::vector<Comparison>& comparisons) {
   Table table;
   table.AddColumn("", "light");
-  table.AddColumn("energy", "focused");
-  table.AddColumn("energy", "published");
-  table.AddColumn("energy", "final");
-  table.AddColumn("gain over", "focused");
-  table.AddColumn("gain over", "published");
+  table.AddColumn("wrong, % of the image", "focused");
+  table.AddColumn("wrong, % of the image", "published");
+  table.AddColumn("wrong, % of the image", "final");
+  table.AddColumn("fewer than", "focused");
+  table.AddColumn("fewer than", "published");
   table.AddColumn("rms footprint", "focused");
   table.AddColumn("rms footprint", "final");
-  table.AddColumn("worst footprint", "focused");
-  table.AddColumn("worst footprint", "final");
+  table.AddColumn("99 % footprint", "focused");
+  table.AddColumn("99 % footprint", "final");
   table.AddColumn("time", "ms");
   for (const Comparison& comparison : comparisons) {
     if (!comparison.final.ok()) {
       table.AddRow({comparison.light.name, kNoMatrix});
       continue;
     }
-    const LightMatrix& final = *comparison.final;
+    const MatrixFigures& final = comparison.final->figures;
     const bool has_focused = comparison.focused.ok();
     table.AddRow({comparison.light.name,
-                  EnergyText(comparison.focused),
-                  EnergyText(comparison.published),
-                  FigureText(final.energy),
-                  RatioText(comparison.focused, final.energy),
-                  RatioText(comparison.published, final.energy),
-                  has_focused ? FigureText(comparison.focused->footprint.rms) : "-",
+                  WrongText(comparison.focused),
+                  WrongText(comparison.published),
+                  WrongText(comparison.final),
+                  RatioText(comparison.focused, final),
+                  RatioText(comparison.published, final),
+                  has_focused ? FigureText(comparison.focused->figures.footprint.rms) : "-",
                   FigureText(final.footprint.rms),
-                  has_focused ? FigureText(comparison.focused->footprint.worst) : "-",
-                  FigureText(final.footprint.worst),
+                  has_focused ? FigureText(comparison.focused->figures.footprint.p99) : "-",
+                  FigureText(final.footprint.p99),
                   FigureText(comparison.final_time_ms)});
   }
   return table;
@@ -76,7 +77,7 @@ Table SampleTable(const std::vector<Comparison>& comparisons) {
       table.AddRow({comparison.light.name, kNoMatrix});
       continue;
     }
-    const SampleCounts& counts = comparison.final->samples;
+    const SampleCounts& counts = comparison.final->matrix.samples;
     table.AddRow({comparison.light.name,
                   absl::StrCat(counts.candidates),
                   absl::StrCat(counts.used),
@@ -98,7 +99,13 @@ std::string MethodText(const FitOptions& options) {
                       WordFor(AffineWords(), options.affine),
                       ", ",
                       WordFor(MetricWords(), options.metric),
-                      " metric");
+                      " metric, around what is ",
+                      options.cover == Cover::kShadowed ? "shadowed" : "visible");
+}
+
+std::string ShortMethodText(const FitOptions& options) {
+  return absl::StrCat(
+      WordFor(SearchWords(), options.search), " search, ", WordFor(MetricWords(), options.metric));
 }
 
 std::string FitReportText(const std::string& source,

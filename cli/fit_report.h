@@ -20,4 +20,7 @@ std::string FitReportText(const std::string& source,
 // "global search, parallelogram, l2 metric": the choices in the command line's words.
 std::string MethodText(const FitOptions& options);
 
+// "global search, l1-edge": as much of it as fits over a picture.
+std::string ShortMethodText(const FitOptions& options);
+
 }  // namespace lightfit

@@ -9,15 +9,21 @@
 #include <utility>
 #include <vector>
 
+#include "cli/compare.h"
 #include "cli/exit_code.h"
 #include "cli/fit.h"
+#include "cli/render.h"
 #include "cli/verb.h"
 
 namespace lightfit {
 namespace {
 
 constexpr Verb kVerbs[] = {
+    {"compare", "Compare every method on a scene or a read-back", DeclareCompare},
     {"fit", "Fit the light matrices of one read-back (an EXR file)", DeclareFit},
+    {"render",
+     "Make a read-back with exact shadows from a scene (.glb, .obj, .ply)",
+     DeclareRender},
 };
 
 constexpr char kFooter[] =

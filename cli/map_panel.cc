@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "cli/theme.h"
@@ -49,19 +50,21 @@ void DrawGrid(const Frame& frame, MapSize map, Canvas* canvas) {
 }  // namespace
 
 MapView ViewMap(absl::Span<const Eigen::Vector3d> receivers_in_world,
-                absl::Span<const uint8_t> samples,
+                absl::Span<const ReceiverRole> roles,
                 const Eigen::Matrix4d& map_from_world,
                 MapSize map) {
   MapView view;
+  std::vector<Eigen::Vector2d> shadowed;
   view.receivers.reserve(receivers_in_world.size());
   for (size_t i = 0; i < receivers_in_world.size(); ++i) {
     const Eigen::Vector4d x_in_map = map_from_world * receivers_in_world[i].homogeneous();
     if (!(x_in_map.w() > 0)) continue;
     const Eigen::Vector2d texel = x_in_map.head<2>() / x_in_map.w();
     view.receivers.push_back(texel);
-    if (samples[i]) view.samples.push_back(texel);
+    if (roles[i].is_sample) view.samples.push_back(texel);
+    if (roles[i].is_shadowed) shadowed.push_back(texel);
   }
-  view.hull = ConvexHull(view.receivers);
+  view.hull = ConvexHull(std::move(shadowed));
   view.hull_share = Area(view.hull) / (static_cast<double>(map.width) * map.height);
   return view;
 }

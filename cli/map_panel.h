@@ -19,13 +19,19 @@ namespace lightfit {
 struct MapView {
   std::vector<Eigen::Vector2d> receivers;  // texels
   std::vector<Eigen::Vector2d> samples;    // texels
-  std::vector<Eigen::Vector2d> hull;       // convex hull of the receivers, texels
+  std::vector<Eigen::Vector2d> hull;       // convex hull of the shadowed receivers, texels
   double hull_share = 0;                   // of the map's area
 };
 
-// `samples` holds 1 for every receiver that is also a sample, in the receivers' order.
+// What the light's shadow has to do with a receiver.
+struct ReceiverRole {
+  bool is_shadowed = false;
+  bool is_sample = false;
+};
+
+// `roles` are in the receivers' order.
 MapView ViewMap(absl::Span<const Eigen::Vector3d> receivers_in_world,
-                absl::Span<const uint8_t> samples,
+                absl::Span<const ReceiverRole> roles,
                 const Eigen::Matrix4d& map_from_world,
                 MapSize map);
 

@@ -11,4 +11,7 @@ namespace lightfit {
 // 0.0532, 1.50, 47.1, 1234, 2.35e+07. Zero is "0".
 std::string FigureText(double value);
 
+// A share of 1 in per cent, without the sign: 0.0532 for 0.000532.
+inline std::string PercentText(double share) { return FigureText(100.0 * share); }
+
 }  // namespace lightfit

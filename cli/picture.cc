@@ -1,11 +1,11 @@
 #include "cli/picture.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "absl/strings/str_split.h"
 #include "cli/color_map.h"
 #include "cli/heat_panel.h"
 #include "cli/map_panel.h"
@@ -34,12 +34,18 @@ constexpr int kLightNameSize = 21;
 constexpr int kPanelTitleSize = 16;
 constexpr int kCaptionSize = 14;
 
+// What is drawn of one matrix.
+struct Panels {
+  std::vector<float> footprints;
+  MapView view;
+};
+
 // Everything that is drawn for one light.
 struct Row {
   absl::Status status;
   std::vector<uint8_t> samples;
-  std::vector<float> footprints[2];  // before, after
-  MapView views[2];
+  std::optional<Panels> before;  // absent where there is no focused map
+  Panels after;
 };
 
 struct Layout {
@@ -62,15 +68,18 @@ Layout LayoutFor(const Readback& readback) {
   return layout;
 }
 
-// Pixels that are receivers, in the order of ReceiverPositions(), tell which receivers are samples.
-std::vector<uint8_t> SamplesOfReceivers(const Readback& readback,
-                                        const std::vector<uint8_t>& samples) {
+// The roles of the pixels that are receivers, in the order of ReceiverPositions().
+std::vector<ReceiverRole> RolesOfReceivers(const Readback& readback,
+                                           const Light& light,
+                                           const std::vector<uint8_t>& samples) {
   const AffineDepth depth(readback.camera, readback.depth_kind);
-  std::vector<uint8_t> chosen;
+  std::vector<ReceiverRole> roles;
   for (size_t pixel = 0; pixel < samples.size(); ++pixel) {
-    if (depth.IsSurface(readback.depth[pixel])) chosen.push_back(samples[pixel]);
+    if (!depth.IsSurface(readback.depth[pixel])) continue;
+    const bool is_shadowed = ((readback.shadow_bits[pixel] >> light.shadow_bit) & 1u) != 0;
+    roles.push_back({is_shadowed, samples[pixel] != 0});
   }
-  return chosen;
+  return roles;
 }
 
 absl::StatusOr<Row> MakeRow(const Readback& readback,
@@ -79,66 +88,62 @@ absl::StatusOr<Row> MakeRow(const Readback& readback,
                             MapSize map,
                             const SampleOptions& options) {
   Row row;
-  row.status = light.final.ok() ? light.focused.status() : light.final.status();
+  row.status = light.final.status();
   if (!row.status.ok()) return row;
   absl::StatusOr<std::vector<uint8_t>> samples = SampleImage(readback, light.light, options);
   if (!samples.ok()) return samples.status();
   row.samples = *std::move(samples);
-  const std::vector<uint8_t> receiver_is_sample = SamplesOfReceivers(readback, row.samples);
-  if (receiver_is_sample.size() != receivers.size()) {
+  const std::vector<ReceiverRole> roles = RolesOfReceivers(readback, light.light, row.samples);
+  if (roles.size() != receivers.size()) {
     return absl::InternalError("picture: receivers and surface pixels differ in number");
   }
-  const Eigen::Matrix4d matrices[] = {light.focused->map_from_world, light.final->map_from_world};
-  for (int i = 0; i < 2; ++i) {
+  const auto panels_of = [&](const JudgedMatrix& map_of_light) -> absl::StatusOr<Panels> {
+    const Eigen::Matrix4d& matrix = map_of_light.matrix.map_from_world;
     absl::StatusOr<std::vector<float>> footprints =
-        FootprintImage(readback, light.light, matrices[i], options);
+        FootprintImage(readback, light.light, matrix, options);
     if (!footprints.ok()) return footprints.status();
-    row.footprints[i] = *std::move(footprints);
-    row.views[i] = ViewMap(receivers, receiver_is_sample, matrices[i], map);
-  }
+    return Panels{*std::move(footprints), ViewMap(receivers, roles, matrix, map)};
+  };
+  absl::StatusOr<Panels> after = panels_of(*light.final);
+  if (!after.ok()) return after.status();
+  row.after = *std::move(after);
+  if (!light.focused.ok()) return row;
+  absl::StatusOr<Panels> before = panels_of(*light.focused);
+  if (!before.ok()) return before.status();
+  row.before = *std::move(before);
   return row;
 }
 
 // One scale for before and after; every light has its own, as lights may differ a thousandfold.
 LogScale SharedScale(const Row& row) {
-  std::vector<float> all = row.footprints[0];
-  all.insert(all.end(), row.footprints[1].begin(), row.footprints[1].end());
+  std::vector<float> all = row.after.footprints;
+  if (row.before.has_value()) {
+    all.insert(all.end(), row.before->footprints.begin(), row.before->footprints.end());
+  }
   return ScaleFor(all);
 }
 
-// "3.08 times lower than focused", or higher: never a ratio below 1, which has to be read twice.
-std::string GainText(const LightMatrix& before, const LightMatrix& after, absl::string_view name) {
-  if (!(after.energy > 0 && before.energy > 0)) return "";
-  const double gain = before.energy / after.energy;
+// "3.08 times fewer than focused", or more: never a ratio below 1, which has to be read twice.
+std::string GainText(const MatrixFigures& before,
+                     const MatrixFigures& after,
+                     absl::string_view name) {
+  if (!(after.wrong_share > 0 && before.wrong_share > 0)) return absl::StrCat("beside ", name);
+  const double gain = before.wrong_share / after.wrong_share;
   return absl::StrCat(FigureText(gain < 1 ? 1 / gain : gain),
-                      gain < 1 ? " times higher than " : " times lower than ",
+                      gain < 1 ? " times more than " : " times fewer than ",
                       name);
 }
 
 std::string Verdict(const Comparison& light) {
-  std::string text = absl::StrCat("energy ", GainText(*light.focused, *light.final, "focused"));
+  const MatrixFigures& final = light.final->figures;
+  std::string text = light.focused.ok()
+                         ? absl::StrCat("wrong pixels foretold: ",
+                                        GainText(light.focused->figures, final, "focused"))
+                         : "no focused map has room for all receivers";
   if (light.published.ok()) {
-    absl::StrAppend(&text, ", ", GainText(*light.published, *light.final, "as published"));
+    absl::StrAppend(&text, ", ", GainText(light.published->figures, final, "as published"));
   }
   return text;
-}
-
-// Breaks at spaces so that no line is wider than `max_width` pixels.
-std::vector<std::string> Wrapped(absl::string_view text,
-                                 int max_width,
-                                 const TextStyle& style,
-                                 const Typeface& typeface) {
-  std::vector<std::string> lines(1);
-  for (const absl::string_view word : absl::StrSplit(text, ' ')) {
-    const std::string longer =
-        lines.back().empty() ? std::string(word) : absl::StrCat(lines.back(), " ", word);
-    if (!lines.back().empty() && typeface.Width(longer, style) > max_width) {
-      lines.emplace_back(word);
-    } else {
-      lines.back() = longer;
-    }
-  }
-  return lines;
 }
 
 // A drawing in progress: the page, and how far down it is filled.
@@ -176,35 +181,44 @@ class Page {
                const Row& row,
                MapSize map,
                const std::string& final_label) {
-    const LightMatrix* matrices[] = {&*light.focused, &*light.final};
     RowHeader(light.light.name, Verdict(light), kGainColor);
-    const SampleCounts& counts = matrices[1]->samples;
+    const SampleCounts& counts = light.final->matrix.samples;
     Text(layout_.width - kMargin,
          y_ - kRowHeaderHeight + 30,
          absl::StrFormat("%d of %d shadow-edge pixels used", counts.used, counts.candidates),
          {.size_px = kPanelTitleSize, .color = kFaintTextColor, .anchor = Anchor::kRight});
-    const std::string names[] = {"Before: focused map", absl::StrCat("After: ", final_label)};
     const LogScale scale = SharedScale(row);
     const int panels_y = y_ + kPanelHeaderHeight;
-    for (int i = 0; i < 2; ++i) {
-      const LightMatrix& matrix = *matrices[i];
-      PanelHeader(layout_.HeatX(i),
-                  names[i],
-                  absl::StrFormat("energy %s, texel footprint: rms %s, worst %s px",
-                                  FigureText(matrix.energy),
-                                  FigureText(matrix.footprint.rms),
-                                  FigureText(matrix.footprint.worst)));
+    const auto draw = [&](int column,
+                          const std::string& heat_title,
+                          const std::string& map_title,
+                          const MatrixFigures& figures,
+                          const Panels& panels) {
+      PanelHeader(layout_.HeatX(column),
+                  heat_title,
+                  absl::StrFormat("%s %% of the image wrong; texel footprint: rms %s, 99 %% %s px",
+                                  PercentText(figures.wrong_share),
+                                  FigureText(figures.footprint.rms),
+                                  FigureText(figures.footprint.p99)));
       canvas_.DrawImage(
-          layout_.HeatX(i),
+          layout_.HeatX(column),
           panels_y,
-          DrawHeatPanel(readback, light.light, row.footprints[i], row.samples, scale));
-      PanelHeader(layout_.MapX(i),
-                  absl::StrCat("Map ", i == 0 ? "before" : "after"),
-                  absl::StrFormat("receivers' hull fills %.0f %% of the map",
-                                  100 * row.views[i].hull_share));
-      canvas_.DrawImage(
-          layout_.MapX(i), panels_y, DrawMapPanel(row.views[i], map, layout_.map_panel, typeface_));
+          DrawHeatPanel(readback, light.light, panels.footprints, row.samples, scale));
+      PanelHeader(layout_.MapX(column),
+                  map_title,
+                  absl::StrFormat("the shadows' hull fills %.0f %% of the map",
+                                  100 * panels.view.hull_share));
+      canvas_.DrawImage(layout_.MapX(column),
+                        panels_y,
+                        DrawMapPanel(panels.view, map, layout_.map_panel, typeface_));
+    };
+    if (row.before.has_value()) {
+      draw(0, "Before: focused map", "Map before", light.focused->figures, *row.before);
+    } else {
+      PanelHeader(
+          layout_.HeatX(0), "Before: none", "the focused map would have to look all around");
     }
+    draw(1, absl::StrCat("After: ", final_label), "Map after", light.final->figures, row.after);
     Text(layout_.BarX(), panels_y - 10, "px / texel", {.size_px = 13, .color = kFaintTextColor});
     DrawColorBar(layout_.BarX(), panels_y, layout_.heat.height, scale, typeface_, &canvas_);
     y_ = panels_y + layout_.panel_height + kRowGap;
@@ -221,7 +235,7 @@ class Page {
           std::pair{kUnratedColor, "not rated: turned away, edge-on or at a depth edge"},
           std::pair{kReceiverColor, "visible surface in the map"},
           std::pair{kSampleColor, "shadow edge in the map"},
-          std::pair{kHullColor, "hull of the visible surface"}}) {
+          std::pair{kHullColor, "hull of the shadowed surface"}}) {
       canvas_.FillRectangle(x, y_ + 3, 14, 14, color);
       const TextStyle style = {.size_px = kCaptionSize, .color = kTextColor};
       Text(x + 21, y_ + 15, text, style);
@@ -230,9 +244,8 @@ class Page {
     Text(kMargin,
          y_ + 44,
          "Footprint: how many read-back pixels one shadow-map texel covers across, on the screen. "
-         "Below 1 the map is finer than the read-back, above 1 coarser. Energy: footprints "
-         "(l2: squared) summed along the shadow edges; lower is better. Each light has its own "
-         "colour scale.",
+         "Below 1 the map is finer than the read-back, above 1 coarser. Wrong: shadow pixels that "
+         "will be wrong, foretold from the read-back. Each light has its own colour scale.",
          {.size_px = kCaptionSize, .color = kFaintTextColor});
   }
 
@@ -281,8 +294,8 @@ absl::StatusOr<Canvas> DrawPicture(const Readback& readback,
     if (!row.ok()) return row.status();
     rows.push_back(*std::move(row));
     const absl::Status& status = rows.back().status;
-    messages.push_back(Wrapped(
-        std::string(status.message()), layout.width - 2 * kMargin, {.size_px = 16}, typeface));
+    messages.push_back(typeface.Wrapped(
+        std::string(status.message()), layout.width - 2 * kMargin, {.size_px = 16}));
     height += kRowHeaderHeight + kRowGap;
     height += status.ok() ? kPanelHeaderHeight + layout.panel_height
                           : kMessageLineHeight * static_cast<int>(messages.back().size());

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
+
+#include "absl/strings/str_format.h"
 
 namespace lightfit {
 namespace {
@@ -13,6 +16,16 @@ constexpr double kPatience_s = 1.0;
 constexpr int kBarWidth = 30;  // characters
 
 }  // namespace
+
+std::string DurationText(double seconds) {
+  // Also what is not a number or far too long has to be printed somehow.
+  constexpr double kLongest_s = 1000.0 * 3600.0;
+  const auto whole =
+      static_cast<int64_t>(std::ceil(seconds > 0 ? std::min(seconds, kLongest_s) : 0));
+  if (whole < 60) return absl::StrFormat("%d s", whole);
+  if (whole < 3600) return absl::StrFormat("%d min %d s", whole / 60, whole % 60);
+  return absl::StrFormat("%d h %d min", whole / 3600, whole % 3600 / 60);
+}
 
 Progress::Progress(int num_steps, bool quiet)
     : num_steps_(std::max(num_steps, 1)), enabled_(!quiet && isatty(STDERR_FILENO) == 1) {}
@@ -41,7 +54,7 @@ void Progress::Show() {
   // The steps are about equally long, so the time left is in proportion to the steps left.
   const double left_s = num_done_ > 0 ? elapsed_s * (num_steps_ - num_done_) / num_done_ : 0;
   std::fprintf(stderr, "\r[%s] %d/%d", bar.c_str(), num_done_, num_steps_);
-  if (num_done_ > 0) std::fprintf(stderr, ", %.0f s left", std::ceil(left_s));
+  if (num_done_ > 0) std::fprintf(stderr, ", %s left", DurationText(left_s).c_str());
   std::fprintf(stderr, "  %s\033[K", what_.c_str());
   std::fflush(stderr);
 }

@@ -8,8 +8,12 @@
 
 namespace lightfit {
 
-// Silent unless stderr is a terminal and more than a second has passed. The bar is wiped when the
-// object goes, so that it never mixes with other output.
+// "8 s", "2 min 5 s", "1 h 20 min": rounded up, as people say how long something takes.
+std::string DurationText(double seconds);
+
+// A bar, the steps done and the time left. Silent unless stderr is a terminal and more than a
+// second has passed. The bar is wiped when the object goes, so that it never mixes with other
+// output.
 class Progress {
  public:
   explicit Progress(int num_steps, bool quiet = false);

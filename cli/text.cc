@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
 
 namespace lightfit {
 namespace {
@@ -64,6 +65,22 @@ int Typeface::Width(absl::string_view text, const TextStyle& style) const {
   if (!found() || text.empty()) return 0;
   const OIIO::ROI box = OIIO::ImageBufAlgo::text_size(AsciiOnly(text), style.size_px, File(style));
   return box.defined() ? box.xend : 0;
+}
+
+std::vector<std::string> Typeface::Wrapped(absl::string_view text,
+                                           int max_width,
+                                           const TextStyle& style) const {
+  std::vector<std::string> lines(1);
+  for (const absl::string_view word : absl::StrSplit(text, ' ')) {
+    const std::string longer =
+        lines.back().empty() ? std::string(word) : absl::StrCat(lines.back(), " ", word);
+    if (!lines.back().empty() && Width(longer, style) > max_width) {
+      lines.emplace_back(word);
+    } else {
+      lines.back() = longer;
+    }
+  }
+  return lines;
 }
 
 void Typeface::Draw(

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "absl/strings/string_view.h"
 #include "cli/canvas.h"
@@ -35,6 +36,11 @@ class Typeface {
 
   // Pixels from the text's left end to its right end.
   int Width(absl::string_view text, const TextStyle& style) const;
+
+  // Lines of it, broken at spaces so that none is wider than `max_width` pixels.
+  std::vector<std::string> Wrapped(absl::string_view text,
+                                   int max_width,
+                                   const TextStyle& style) const;
 
  private:
   const std::string& File(const TextStyle& style) const { return style.bold ? bold_ : regular_; }

@@ -19,5 +19,8 @@ inline const Rgb kReceiverColor = HexColor(0x8fb4e8);
 inline const Rgb kSampleColor = HexColor(0xff9d3b);
 inline const Rgb kHullColor = HexColor(0x5fe0c8);
 inline const Rgb kBoundaryColor = HexColor(0xffffff);
+inline const Rgb kFalseShadowColor = HexColor(0xff4d2e);  // dark that should be lit
+inline const Rgb kLightLeakColor = HexColor(0x2ec4ff);    // lit that should be dark
+inline const Rgb kCropColor = HexColor(0xffd75e);
 
 }  // namespace lightfit

@@ -18,6 +18,16 @@ v1::Metric MetricToProto(Metric metric) {
   return v1::METRIC_UNSPECIFIED;
 }
 
+v1::Cover CoverToProto(Cover cover) {
+  switch (cover) {
+    case Cover::kReceivers:
+      return v1::COVER_RECEIVERS;
+    case Cover::kShadowed:
+      return v1::COVER_SHADOWED;
+  }
+  return v1::COVER_UNSPECIFIED;
+}
+
 v1::Search SearchToProto(Search search) {
   switch (search) {
     case Search::kFocused:
@@ -77,7 +87,10 @@ v1::FitOptions FitOptionsToProto(const FitOptions& options) {
   samples.set_min_cos_eye(options.samples.min_cos_eye);
   samples.set_min_samples(options.samples.min_samples);
   samples.set_edge_window(options.samples.edge_window);
+  samples.set_use_outlines(options.samples.use_outlines);
+  samples.set_use_terminators(options.samples.use_terminators);
   proto.set_metric(MetricToProto(options.metric));
+  proto.set_cover(CoverToProto(options.cover));
   proto.set_search(SearchToProto(options.search));
   proto.set_affine(AffineToProto(options.affine));
   proto.set_ray_space(RaySpaceToProto(options.ray_space));

@@ -2,7 +2,11 @@
 
 #include <google/protobuf/util/json_util.h>
 
+#include <cmath>
+#include <vector>
+
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 
 namespace lightfit {
 
@@ -29,6 +33,34 @@ absl::StatusOr<std::string> ProtoToJson(const google::protobuf::Message& message
   return absl::InternalError(
       absl::StrCat("cannot be written as JSON: ",
                    std::string(status.message().data(), status.message().size())));
+}
+
+absl::Status CheckFinite(const google::protobuf::Message& message, const std::string& where) {
+  const google::protobuf::Reflection& reflection = *message.GetReflection();
+  std::vector<const google::protobuf::FieldDescriptor*> fields;
+  reflection.ListFields(message, &fields);
+  for (const google::protobuf::FieldDescriptor* field : fields) {
+    const bool repeated = field->is_repeated();
+    const int count = repeated ? reflection.FieldSize(message, field) : 1;
+    for (int i = 0; i < count; ++i) {
+      std::string path = absl::StrCat(where, ".", field->name());
+      if (repeated) absl::StrAppend(&path, "[", i, "]");
+      if (field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_MESSAGE) {
+        absl::Status status =
+            CheckFinite(repeated ? reflection.GetRepeatedMessage(message, field, i)
+                                 : reflection.GetMessage(message, field),
+                        path);
+        if (!status.ok()) return status;
+      } else if (field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_DOUBLE) {
+        const double value = repeated ? reflection.GetRepeatedDouble(message, field, i)
+                                      : reflection.GetDouble(message, field);
+        if (!std::isfinite(value)) {
+          return absl::InternalError(absl::StrFormat("%s = %g, want a finite number", path, value));
+        }
+      }
+    }
+  }
+  return absl::OkStatus();
 }
 
 }  // namespace lightfit

@@ -1,10 +1,7 @@
 #include "io/result_json.h"
 
-#include <cmath>
 #include <utility>
 
-#include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "io/camera_file.h"
 #include "io/lights_file.h"
 #include "io/options_proto.h"
@@ -34,20 +31,66 @@ v1::Energies EnergiesToProto(const LightMatrix& matrix, const LightFit& fit) {
   proto.set_final(matrix.energy);
   proto.set_start(matrix.energy_start);
   if (matrix.energy_start > 0.0) proto.set_final_over_start(matrix.energy / matrix.energy_start);
-  if (fit.energy_focused) {
-    proto.set_focused(*fit.energy_focused);
-    if (*fit.energy_focused > 0.0) {
-      proto.set_final_over_focused(matrix.energy / *fit.energy_focused);
+  if (fit.focused) {
+    proto.set_focused(fit.focused->energy);
+    if (fit.focused->energy > 0.0) {
+      proto.set_final_over_focused(matrix.energy / fit.focused->energy);
     }
   }
-  if (fit.energy_as_published) {
-    proto.set_as_published(*fit.energy_as_published);
-    if (*fit.energy_as_published > 0.0) {
-      proto.set_final_over_as_published(matrix.energy / *fit.energy_as_published);
+  if (fit.as_published) {
+    proto.set_as_published(fit.as_published->energy);
+    if (fit.as_published->energy > 0.0) {
+      proto.set_final_over_as_published(matrix.energy / fit.as_published->energy);
     }
   }
   return proto;
 }
+
+v1::ForetoldWrong ForetoldToProto(const LightFit& fit) {
+  v1::ForetoldWrong proto;
+  proto.set_final(*fit.wrong_share);
+  if (fit.focused) proto.set_focused(fit.focused->wrong_share);
+  if (fit.as_published) proto.set_as_published(fit.as_published->wrong_share);
+  return proto;
+}
+
+v1::LightResult LightResultToProto(const LightFit& fit, const FitReport& report) {
+  v1::LightResult proto;
+  proto.set_name(fit.light.name);
+  *proto.mutable_light() = LightToProto(fit.light);
+  const absl::Status& status = fit.matrix.status();
+  proto.mutable_status()->set_code(static_cast<int>(status.code()));
+  proto.mutable_status()->set_message(std::string(status.message()));
+  if (fit.time_ms) proto.set_time_ms(*fit.time_ms);
+  const MapSize map = fit.matrix.ok() ? fit.matrix->map : report.map;
+  proto.mutable_map()->set_width(map.width);
+  proto.mutable_map()->set_height(map.height);
+  if (!fit.matrix.ok()) return proto;
+
+  const LightMatrix& matrix = *fit.matrix;
+  *proto.mutable_map_from_world() = MatrixToProto(matrix.map_from_world);
+  const Eigen::Matrix4d clip_from_world =
+      ClipFromMap(matrix.map, report.clip) * matrix.map_from_world;
+  *proto.mutable_clip_from_world() = MatrixToProto(clip_from_world);
+  *proto.mutable_clip() = ClipConventionToProto(report.clip);
+  *proto.mutable_energies() = EnergiesToProto(matrix, fit);
+  if (fit.wrong_share) *proto.mutable_foretold_wrong() = ForetoldToProto(fit);
+  proto.set_solver_report(matrix.solver_report);
+  *proto.mutable_footprint() =
+      FootprintToProto(matrix.footprint, report.options.compute_statistics);
+  *proto.mutable_samples() = SampleCountsToProto(matrix.samples);
+  proto.set_stop_reason(StopReasonToProto(matrix.stop_reason));
+  proto.set_evaluations(matrix.evaluations);
+  for (const TraceStep& step : matrix.trace) {
+    v1::TraceStep& step_proto = *proto.add_trace();
+    step_proto.set_station(step.station);
+    step_proto.set_evaluations(step.evaluations);
+    step_proto.set_energy(step.energy);
+  }
+  return proto;
+}
+
+}  // namespace
 
 v1::FootprintStatistics FootprintToProto(const FootprintStatistics& footprint,
                                          bool with_quantiles) {
@@ -73,71 +116,6 @@ v1::SampleCounts SampleCountsToProto(const SampleCounts& counts) {
   proto.set_used(counts.used);
   return proto;
 }
-
-v1::LightResult LightResultToProto(const LightFit& fit, const FitReport& report) {
-  v1::LightResult proto;
-  proto.set_name(fit.light.name);
-  *proto.mutable_light() = LightToProto(fit.light);
-  const absl::Status& status = fit.matrix.status();
-  proto.mutable_status()->set_code(static_cast<int>(status.code()));
-  proto.mutable_status()->set_message(std::string(status.message()));
-  if (fit.time_ms) proto.set_time_ms(*fit.time_ms);
-  const MapSize map = fit.matrix.ok() ? fit.matrix->map : report.map;
-  proto.mutable_map()->set_width(map.width);
-  proto.mutable_map()->set_height(map.height);
-  if (!fit.matrix.ok()) return proto;
-
-  const LightMatrix& matrix = *fit.matrix;
-  *proto.mutable_map_from_world() = MatrixToProto(matrix.map_from_world);
-  const Eigen::Matrix4d clip_from_world =
-      ClipFromMap(matrix.map, report.clip) * matrix.map_from_world;
-  *proto.mutable_clip_from_world() = MatrixToProto(clip_from_world);
-  *proto.mutable_clip() = ClipConventionToProto(report.clip);
-  *proto.mutable_energies() = EnergiesToProto(matrix, fit);
-  *proto.mutable_footprint() =
-      FootprintToProto(matrix.footprint, report.options.compute_statistics);
-  *proto.mutable_samples() = SampleCountsToProto(matrix.samples);
-  proto.set_stop_reason(StopReasonToProto(matrix.stop_reason));
-  proto.set_evaluations(matrix.evaluations);
-  for (const TraceStep& step : matrix.trace) {
-    v1::TraceStep& step_proto = *proto.add_trace();
-    step_proto.set_station(step.station);
-    step_proto.set_evaluations(step.evaluations);
-    step_proto.set_energy(step.energy);
-  }
-  return proto;
-}
-
-// NaN and infinity have no place in a result: a reader would have to expect strings for numbers.
-absl::Status CheckFinite(const google::protobuf::Message& message, const std::string& where) {
-  const google::protobuf::Reflection& reflection = *message.GetReflection();
-  std::vector<const google::protobuf::FieldDescriptor*> fields;
-  reflection.ListFields(message, &fields);
-  for (const google::protobuf::FieldDescriptor* field : fields) {
-    const bool repeated = field->is_repeated();
-    const int count = repeated ? reflection.FieldSize(message, field) : 1;
-    for (int i = 0; i < count; ++i) {
-      std::string path = absl::StrCat(where, ".", field->name());
-      if (repeated) absl::StrAppend(&path, "[", i, "]");
-      if (field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_MESSAGE) {
-        absl::Status status =
-            CheckFinite(repeated ? reflection.GetRepeatedMessage(message, field, i)
-                                 : reflection.GetMessage(message, field),
-                        path);
-        if (!status.ok()) return status;
-      } else if (field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_DOUBLE) {
-        const double value = repeated ? reflection.GetRepeatedDouble(message, field, i)
-                                      : reflection.GetDouble(message, field);
-        if (!std::isfinite(value)) {
-          return absl::InternalError(absl::StrFormat("%s = %g, want a finite number", path, value));
-        }
-      }
-    }
-  }
-  return absl::OkStatus();
-}
-
-}  // namespace
 
 v1::FitResult FitResultToProto(const FitReport& report) {
   v1::FitResult proto;

@@ -16,17 +16,19 @@
 #include "geometry/light.h"
 #include "io/matrix_proto.h"
 #include "lightfit/v1/result.pb.h"
+#include "optimizer/evaluate.h"
 #include "optimizer/fit_options.h"
 #include "optimizer/light_matrix.h"
 
 namespace lightfit {
 
-// One light's fit beside its yardsticks. Energies of one light are of one metric and one read-back.
+// One light's fit beside its yardsticks, all judged by EvaluateMatrix() with the same options.
 struct LightFit {
   Light light;
   absl::StatusOr<LightMatrix> matrix = absl::UnknownError("not fitted");
-  absl::optional<double> energy_focused;       // the usual focused map: Search::kFocused
-  absl::optional<double> energy_as_published;  // FitOptions::AsPublished()
+  absl::optional<double> wrong_share;          // of `matrix`, foretold: 0 ... 1
+  absl::optional<MatrixFigures> focused;       // of the usual focused map: Search::kFocused
+  absl::optional<MatrixFigures> as_published;  // of FitOptions::AsPublished()
   absl::optional<double>
       time_ms;  // only when asked for: results with times are never the same twice
 };
@@ -42,6 +44,10 @@ struct FitReport {
 };
 
 v1::FitResult FitResultToProto(const FitReport& report);
+
+// Parts of it. Median, p99 and worst footprint only `with_quantiles`.
+v1::FootprintStatistics FootprintToProto(const FootprintStatistics& footprint, bool with_quantiles);
+v1::SampleCounts SampleCountsToProto(const SampleCounts& counts);
 
 // JSON with named fields in schema order and numbers that read back exactly. NaN and infinity are
 // refused (an infinite far plane is left out instead).

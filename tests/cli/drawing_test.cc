@@ -90,10 +90,12 @@ TEST(MapView, CountsTheHullsShareOfTheMap) {
   // A square of 50 texels in a map of 100 by 50, under a matrix that only scales by 50.
   Eigen::Matrix4d map_from_world = Eigen::Matrix4d::Identity();
   map_from_world(0, 0) = map_from_world(1, 1) = 50;
-  const std::vector<Eigen::Vector3d> receivers = {{0, 0, 3}, {1, 0, 3}, {1, 1, 3}, {0, 1, 3}};
-  const std::vector<uint8_t> samples = {0, 0, 1, 0};
-  const MapView view = ViewMap(receivers, samples, map_from_world, {100, 50});
-  EXPECT_EQ(view.receivers.size(), 4u);
+  const std::vector<Eigen::Vector3d> receivers = {
+      {0, 0, 3}, {1, 0, 3}, {1, 1, 3}, {0, 1, 3}, {7, 7, 3}};
+  const std::vector<ReceiverRole> roles = {
+      {true, false}, {true, false}, {true, true}, {true, false}, {false, false}};
+  const MapView view = ViewMap(receivers, roles, map_from_world, {100, 50});
+  EXPECT_EQ(view.receivers.size(), 5u);
   EXPECT_THAT(view.samples, ElementsAre(Eigen::Vector2d(50, 50)));
   EXPECT_NEAR(view.hull_share, 0.5, 1e-12);
   EXPECT_EQ(DrawMapPanel(view, {100, 50}, 420, Typeface()).width(), 420);

@@ -39,7 +39,10 @@ FitReport SomeReport() {
   LightFit sun;
   sun.light = Light::Directional("sun", Eigen::Vector3d(0.0, 0.0, -1.0));
   sun.matrix = SomeMatrix();
-  sun.energy_focused = 50.0;
+  sun.wrong_share = 0.25;
+  sun.focused.emplace();
+  sun.focused->energy = 50.0;
+  sun.focused->wrong_share = 0.5;
   LightFit key;
   key.light = Light::Point("key", Eigen::Vector3d(1.0, 2.0, 3.0));
   key.matrix = absl::FailedPreconditionError("light \"key\": receivers surround it");
@@ -58,6 +61,9 @@ TEST(FitResult, HoldsEveryFigureOfAMatrix) {
   EXPECT_EQ(sun.map_from_world().m(1), 1.0);  // row-major
   EXPECT_EQ(sun.map_from_world().m(4), 4.0);
   EXPECT_EQ(sun.energies().final(), 12.5);
+  EXPECT_EQ(sun.foretold_wrong().final(), 0.25);
+  EXPECT_EQ(sun.foretold_wrong().focused(), 0.5);
+  EXPECT_FALSE(sun.foretold_wrong().has_as_published());
   EXPECT_EQ(sun.energies().final_over_start(), 0.5);
   EXPECT_EQ(sun.energies().final_over_focused(), 0.25);
   EXPECT_FALSE(sun.energies().has_as_published());
@@ -108,7 +114,7 @@ TEST(FitResult, AFailedLightKeepsItsStatusAndHasNoMatrix) {
 TEST(FitResult, RatiosToZeroAreLeftOut) {
   FitReport report = SomeReport();
   report.lights[0].matrix->energy_start = 0.0;
-  report.lights[0].energy_as_published = 0.0;
+  report.lights[0].as_published.emplace();
   const v1::Energies energies = FitResultToProto(report).lights(0).energies();
   EXPECT_FALSE(energies.has_final_over_start());
   EXPECT_TRUE(energies.has_as_published());

@@ -1,0 +1,165 @@
+#include "cli/compare.h"
+
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "cli/compare_inputs.h"
+#include "cli/compare_json.h"
+#include "cli/compare_picture.h"
+#include "cli/compare_report.h"
+#include "cli/exit_code.h"
+#include "cli/fit_report.h"
+#include "cli/output_file.h"
+#include "cli/progress.h"
+#include "io/text_file.h"
+
+namespace lightfit {
+namespace {
+
+absl::Status CheckOutputs(const CompareFlags& flags) {
+  for (const auto& [flag, path] : {std::pair{"--csv", flags.csv_path},
+                                   std::pair{"--json", flags.json_path},
+                                   std::pair{"--picture", flags.picture_path}}) {
+    if (path.empty()) continue;
+    absl::Status status = CheckWritable(flag, path);
+    if (!status.ok()) return status;
+  }
+  return absl::OkStatus();
+}
+
+Typeface FindTypeface() {
+  Typeface typeface = Typeface::Find();
+  if (!typeface.found()) {
+    PrintWarning(
+        "no typeface found, so the picture has no text; install fonts-dejavu-core or set "
+        "LIGHTFIT_FONT to a .ttf file");
+  }
+  return typeface;
+}
+
+std::vector<LightComparison> CompareAll(const CompareInputs& inputs, bool quiet) {
+  const size_t num_rows = RowNames(inputs.options.given).size();
+  Progress progress(static_cast<int>(inputs.lights.size() * num_rows), quiet);
+  CompareOptions options = inputs.options;
+  std::vector<LightComparison> comparisons;
+  for (size_t i = 0; i < inputs.lights.size(); ++i) {
+    const Light& light = inputs.lights[i];
+    size_t num_begun = 0;
+    options.before_row = [&](const std::string& row) {
+      if (num_begun++ > 0) progress.Advance();
+      progress.Begin(absl::StrCat(light.name, ": ", row));
+    };
+    comparisons.push_back(inputs.light_status[i].ok()
+                              ? CompareMaps(inputs.stage, light, options)
+                              : FailedRows(light, inputs.light_status[i], options));
+    // Rows that were not begun, as of a light that cannot be used, are done as well.
+    for (size_t row = num_begun == 0 ? 0 : num_begun - 1; row < num_rows; ++row) {
+      progress.Advance();
+    }
+  }
+  return comparisons;
+}
+
+// Names the lights without a matrix of ours on stderr and returns how many there are.
+int PrintFailedLights(const std::vector<LightComparison>& comparisons) {
+  int num_failed = 0;
+  for (const LightComparison& comparison : comparisons) {
+    const absl::Status& status = comparison.lightfit().status;
+    if (status.ok()) continue;
+    ++num_failed;
+    std::string message(status.message());
+    const std::string name = absl::StrCat("light \"", comparison.light.name, "\"");
+    if (!absl::StrContains(message, name)) message = absl::StrCat(name, ": ", message);
+    PrintError(absl::StrCat("no matrix for ", message));
+  }
+  return num_failed;
+}
+
+CompareHeading HeadingOf(const CompareInputs& inputs) {
+  CompareHeading heading;
+  heading.source = inputs.title;
+  heading.screen_width = inputs.stage.has_truth() ? inputs.stage.screen.camera.width : 0;
+  heading.screen_height = inputs.stage.has_truth() ? inputs.stage.screen.camera.height : 0;
+  heading.readback_width = inputs.stage.readback.width();
+  heading.readback_height = inputs.stage.readback.height();
+  heading.map = inputs.options.map;
+  heading.fit = MethodText(inputs.options.fit);
+  return heading;
+}
+
+size_t LightToDraw(const CompareFlags& flags, const std::vector<LightComparison>& comparisons) {
+  for (size_t i = 0; i < comparisons.size(); ++i) {
+    if (comparisons[i].light.name == flags.picture_light) return i;
+  }
+  return MostTellingLight(comparisons, flags.picture_bias);
+}
+
+// Images of one light only are kept: it is computed once more, the same.
+absl::Status WritePicture(const CompareFlags& flags,
+                          const CompareInputs& inputs,
+                          const std::vector<LightComparison>& comparisons) {
+  const Typeface typeface = FindTypeface();
+  const size_t light = LightToDraw(flags, comparisons);
+  CompareOptions options = inputs.options;
+  options.keep_images = true;
+  const LightComparison comparison = CompareMaps(inputs.stage, inputs.lights[light], options);
+  const ComparePictureOptions picture = {inputs.title, options.map, flags.picture_bias};
+  return WritePng(DrawComparePicture(inputs.stage, comparison, picture, typeface),
+                  flags.picture_path);
+}
+
+absl::Status WriteOutputs(const CompareFlags& flags,
+                          const CompareInputs& inputs,
+                          const std::vector<LightComparison>& comparisons) {
+  absl::Status status;
+  if (!flags.csv_path.empty()) {
+    status.Update(WriteTextFileAtomically(flags.csv_path, CompareCsv(comparisons)));
+  }
+  if (!flags.json_path.empty()) {
+    status.Update(WriteComparisonJson(
+        flags.json_path,
+        ComparisonToProto(flags.scene.scene, inputs.stage, inputs.options, comparisons)));
+  }
+  if (!flags.picture_path.empty()) status.Update(WritePicture(flags, inputs, comparisons));
+  return status;
+}
+
+int Fail(ExitCode code, const absl::Status& status) {
+  PrintError(status.message());
+  return code;
+}
+
+}  // namespace
+
+std::function<int()> DeclareCompare(CLI::App* app) {
+  const auto flags = std::make_shared<CompareFlags>();
+  DeclareCompareFlags(app, flags.get());
+  return [flags] { return RunCompare(*flags); };
+}
+
+int RunCompare(const CompareFlags& flags) {
+  absl::Status status = ValidateFitOptions(flags.fit.options);
+  if (!status.ok()) return Fail(kExitUsage, status);
+  status = CheckOutputs(flags);
+  if (!status.ok()) return Fail(kExitBadInput, status);
+  const absl::StatusOr<CompareInputs> inputs = ReadCompareInputs(flags);
+  if (!inputs.ok()) return Fail(kExitBadInput, inputs.status());
+  for (const std::string& warning : inputs->warnings) PrintWarning(warning);
+
+  const std::vector<LightComparison> comparisons = CompareAll(*inputs, flags.quiet);
+  if (!flags.quiet) {
+    const std::string text = CompareReportText(HeadingOf(*inputs), comparisons, flags.per_light);
+    std::fputs(text.c_str(), stdout);
+    std::fflush(stdout);
+  }
+  const int num_failed = PrintFailedLights(comparisons);
+  status = WriteOutputs(flags, *inputs, comparisons);
+  if (!status.ok()) return Fail(kExitBadInput, status);
+  return num_failed > 0 ? kExitIncomplete : kExitOk;
+}
+
+}  // namespace lightfit

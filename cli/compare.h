@@ -1,0 +1,17 @@
+// cli/compare.h
+//
+// `lightfit compare SCENE|READBACK.exr`: every method side by side, on one light or many.
+#pragma once
+
+#include "cli/compare_flags.h"
+#include "cli/verb.h"
+
+namespace lightfit {
+
+std::function<int()> DeclareCompare(CLI::App* app);
+
+// Does what `flags` ask for and returns an ExitCode. Files are written even when lightfit has no
+// matrix for some of the lights.
+int RunCompare(const CompareFlags& flags);
+
+}  // namespace lightfit

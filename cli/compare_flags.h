@@ -1,0 +1,68 @@
+// cli/compare_flags.h
+//
+// The options of `lightfit compare` as they stand on the command line.
+// In:   words; a wrong one is refused while parsing (exit code 1).
+// Out:  CompareFlags.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/types/optional.h"
+#include "cli/compare_choice.h"
+#include "cli/fit_flags.h"
+#include "cli/scene_flags.h"
+#include "render/judge.h"
+
+namespace lightfit {
+
+// Pixels.
+struct ImageSize {
+  int width = 0;
+  int height = 0;
+};
+
+// --matrix NAME=FILE.
+struct MatrixFlag {
+  std::string name, path;
+};
+
+struct CompareFlags {
+  SceneFlags scene;  // its positional may be a read-back
+
+  // FitFlags::options are those of "lightfit"; of the rest only what says how a read-back is to be
+  // understood.
+  FitFlags fit;
+
+  ImageSize screen = {750, 750};
+  absl::optional<ImageSize> readback;  // absent: DefaultReadbackSize()
+  MapSize map = {400, 400};
+  std::vector<MatrixFlag> matrices;
+  BiasOptions bias;  // constant_share only
+
+  bool per_light = false;
+  std::string csv_path;
+  std::string json_path;
+  std::string picture_path;
+  std::string picture_light;  // empty: MostTellingLight()
+  Bias picture_bias = Bias::kIdeal;
+  bool quiet = false;
+
+  bool is_readback() const;  // rather than a scene
+};
+
+// Declares every option on `app`, to be parsed into `flags`, which must stay where it is.
+void DeclareCompareFlags(CLI::App* app, CompareFlags* flags);
+
+// "750x750".
+absl::StatusOr<ImageSize> ParseImageSize(const std::string& text);
+
+// "engine=matrices.json". The name must not be that of a row which is there already.
+absl::StatusOr<MatrixFlag> ParseMatrixFlag(const std::string& text);
+
+// As many pixels as 180x180 in the screen's ratio of width to height.
+ImageSize DefaultReadbackSize(ImageSize screen);
+
+}  // namespace lightfit

@@ -1,0 +1,105 @@
+#include "cli/compare_inputs.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "cli/suggest.h"
+
+namespace lightfit {
+namespace {
+
+absl::Status ReadSceneInputs(const CompareFlags& flags, CompareInputs* inputs) {
+  absl::StatusOr<std::vector<Light>> lights = SceneLights(flags.scene);
+  if (!lights.ok()) return lights.status();
+  inputs->lights = *std::move(lights);
+  inputs->light_status.resize(inputs->lights.size());
+  const absl::StatusOr<Camera> camera =
+      MakeViewCamera(flags.scene, flags.screen.width, flags.screen.height);
+  if (!camera.ok()) return camera.status();
+  absl::StatusOr<LoadedScene> scene = LoadScene(flags.scene);
+  if (!scene.ok()) return scene.status();
+  inputs->scene = std::make_unique<LoadedScene>(*std::move(scene));
+  inputs->title = inputs->scene->title;
+  if (inputs->scene->num_dropped > 0) {
+    inputs->warnings.push_back(absl::StrFormat(
+        "%d triangles without area or with bad coordinates ignored", inputs->scene->num_dropped));
+  }
+  const ImageSize readback = flags.readback.value_or(DefaultReadbackSize(flags.screen));
+  absl::StatusOr<CompareStage> stage =
+      MakeStage(inputs->scene->caster, *camera, readback.width, readback.height);
+  if (!stage.ok()) return stage.status();
+  inputs->stage = *std::move(stage);
+  const absl::StatusOr<std::string> sight = CheckSight(inputs->scene->caster, inputs->stage.screen);
+  if (!sight.ok()) return sight.status();
+  if (!sight->empty()) inputs->warnings.push_back(*sight);
+  return absl::OkStatus();
+}
+
+absl::Status ReadReadbackInputs(const CompareFlags& flags, CompareInputs* inputs) {
+  if (flags.scene.num_random_lights > 0) {
+    return absl::InvalidArgumentError(
+        "--random-lights: a read-back holds the shadows of its own lights only, want --lights FILE "
+        "or --light NAME=sun:X,Y,Z; or compare on a scene");
+  }
+  if (flags.scene.view.has_value()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--camera ",
+                     flags.scene.camera,
+                     ": a read-back has a camera of its own; leave it out, or give a file"));
+  }
+  if (!flags.picture_path.empty()) {
+    return absl::InvalidArgumentError(
+        "--picture: a read-back has no true shadows to draw; compare on a scene, or draw "
+        "footprints with lightfit fit --picture");
+  }
+  FitFlags fit = flags.fit;
+  fit.readback_path = flags.scene.scene;
+  fit.lights = flags.scene.lights;
+  fit.camera_path = flags.scene.camera;
+  fit.frame = flags.scene.frame;
+  absl::StatusOr<FitInputs> readback = ReadFitInputs(fit);
+  if (!readback.ok()) return readback.status();
+  inputs->readback = std::make_unique<FitInputs>(*std::move(readback));
+  inputs->title = flags.scene.scene;
+  inputs->lights = inputs->readback->lights;
+  inputs->light_status = inputs->readback->file.light_status;
+  absl::StatusOr<CompareStage> stage = MakeStage(inputs->readback->file.View());
+  if (!stage.ok()) return stage.status();
+  inputs->stage = *std::move(stage);
+  return absl::OkStatus();
+}
+
+absl::Status CheckPictureLight(const std::string& name, const std::vector<Light>& lights) {
+  if (name.empty()) return absl::OkStatus();
+  std::vector<std::string> names;
+  names.reserve(lights.size());
+  for (const Light& light : lights) names.push_back(light.name);
+  if (std::find(names.begin(), names.end(), name) != names.end()) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat("--picture-light ", name, ": there is no such light", DidYouMean(name, names)));
+}
+
+}  // namespace
+
+absl::StatusOr<CompareInputs> ReadCompareInputs(const CompareFlags& flags) {
+  CompareInputs inputs;
+  inputs.options.map = flags.map;
+  inputs.options.fit = flags.fit.options;
+  inputs.options.bias = flags.bias;
+  for (const MatrixFlag& matrix : flags.matrices) {
+    absl::StatusOr<GivenMatrices> given = ReadGivenMatrices(matrix.name, matrix.path, flags.map);
+    if (!given.ok()) return given.status();
+    inputs.options.given.push_back(*std::move(given));
+  }
+  absl::Status status =
+      flags.is_readback() ? ReadReadbackInputs(flags, &inputs) : ReadSceneInputs(flags, &inputs);
+  if (!status.ok()) return status;
+  status = CheckPictureLight(flags.picture_light, inputs.lights);
+  if (!status.ok()) return status;
+  return inputs;
+}
+
+}  // namespace lightfit

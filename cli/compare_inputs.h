@@ -1,0 +1,35 @@
+// cli/compare_inputs.h
+//
+// What `lightfit compare` works on: the scene or read-back, the lights and the matrices that the
+// flags name.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "cli/compare_flags.h"
+#include "cli/compare_stage.h"
+#include "cli/fit_inputs.h"
+#include "cli/method_comparison.h"
+#include "cli/scene_flags.h"
+
+namespace lightfit {
+
+struct CompareInputs {
+  // One of the two is there and outlives `stage`.
+  std::unique_ptr<LoadedScene> scene;
+  std::unique_ptr<FitInputs> readback;
+
+  CompareStage stage;
+  std::string title;
+  std::vector<Light> lights;
+  std::vector<absl::Status> light_status;  // whether the light could be read
+  CompareOptions options;
+  std::vector<std::string> warnings;
+};
+
+absl::StatusOr<CompareInputs> ReadCompareInputs(const CompareFlags& flags);
+
+}  // namespace lightfit

@@ -1,0 +1,288 @@
+#include "cli/render.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
+#include "cli/exit_code.h"
+#include "cli/output_file.h"
+#include "cli/progress.h"
+#include "cli/render_picture.h"
+#include "cli/scene_flags.h"
+#include "cli/suggest.h"
+#include "cli/table.h"
+#include "io/lights_file.h"
+#include "io/proto_json.h"
+#include "io/readback_exr_write.h"
+#include "io/text_file.h"
+#include "render/readback_image.h"
+
+namespace lightfit {
+namespace {
+
+constexpr char kExamples[] =
+    "Examples:\n"
+    "  lightfit render room.glb --camera -2.5,1.6,-3:2,0.8,2 --light lamp=point:-1,2,0 -o "
+    "room.exr\n"
+    "  lightfit render generate --camera 0,1.7,18:0,0.5,0 --random-lights 3 -o floor.exr \\\n"
+    "      --lights-out floor.json --picture floor.png --picture-size 1280x720\n"
+    "  lightfit fit floor.exr --lights floor.json\n"
+    "\n"
+    "Units: positions in world units, angles in degrees, images in pixels. The read-back holds\n"
+    "depth along the view (Z), one channel shadow.LIGHT per light (1 where a surface that faces\n"
+    "the light is in shadow) and the camera.";
+
+struct RenderFlags {
+  SceneFlags scene;
+  PixelSize size = {180, 180};
+  std::string output_path;
+  std::string picture_path;
+  PixelSize picture_size;  // 0x0: as `size`
+  std::string picture_light;
+  std::string lights_path;
+  bool quiet = false;
+};
+
+void AddPixelSize(CLI::App* app,
+                  const std::string& flag,
+                  const std::string& meaning,
+                  PixelSize* size) {
+  app->add_option_function<std::string>(
+         flag,
+         [flag, size](const std::string& text) {
+           const absl::StatusOr<PixelSize> parsed = ParsePixelSize(text);
+           if (!parsed.ok()) {
+             throw CLI::ValidationError(flag, std::string(parsed.status().message()));
+           }
+           *size = *parsed;
+         },
+         meaning)
+      ->type_name("WIDTHxHEIGHT")
+      ->group("Output");
+}
+
+void DeclareFlags(CLI::App* app, RenderFlags* flags) {
+  DeclareSceneFlags(app, &flags->scene);
+  const std::string group = "Output";
+  app->add_option("-o,--output", flags->output_path, "Write the read-back to this file")
+      ->type_name("FILE.exr")
+      ->group(group);
+  AddPixelSize(app, "--size", "Size of the read-back in pixels [180x180]", &flags->size);
+  app->add_option("--lights-out",
+                  flags->lights_path,
+                  "Write the lights to this file, for lightfit fit --lights")
+      ->type_name("FILE.json")
+      ->group(group);
+  app->add_option("--picture", flags->picture_path, "Draw the scene with the shadows of one light")
+      ->type_name("FILE.png")
+      ->group(group);
+  AddPixelSize(
+      app, "--picture-size", "Size of the picture in pixels [as --size]", &flags->picture_size);
+  app->add_option("--picture-light", flags->picture_light, "Which light to draw [the first]")
+      ->type_name("LIGHT")
+      ->group(group);
+  app->add_flag("--quiet", flags->quiet, "No table and no progress; errors and warnings only")
+      ->group(group);
+  app->footer(kExamples);
+}
+
+absl::Status CheckOutputs(const RenderFlags& flags) {
+  if (flags.output_path.empty() && flags.picture_path.empty()) {
+    return absl::InvalidArgumentError(
+        "nothing to write: want -o FILE.exr for a read-back, --picture FILE.png, or both");
+  }
+  for (const auto& [flag, path] : {std::pair{"--output", flags.output_path},
+                                   std::pair{"--picture", flags.picture_path},
+                                   std::pair{"--lights-out", flags.lights_path}}) {
+    if (path.empty()) continue;
+    if (absl::Status status = CheckWritable(flag, path); !status.ok()) return status;
+  }
+  return absl::OkStatus();
+}
+
+// The light to draw.
+absl::StatusOr<Light> PictureLight(const RenderFlags& flags, const std::vector<Light>& lights) {
+  if (flags.picture_light.empty()) return lights.front();
+  std::vector<std::string> names;
+  names.reserve(lights.size());
+  for (const Light& light : lights) {
+    if (light.name == flags.picture_light) return light;
+    names.push_back(light.name);
+  }
+  return absl::InvalidArgumentError(absl::StrCat("--picture-light ",
+                                                 flags.picture_light,
+                                                 ": there is no such light, want one of ",
+                                                 absl::StrJoin(names, ", "),
+                                                 DidYouMean(flags.picture_light, names)));
+}
+
+// What the verb works on.
+struct Inputs {
+  LoadedScene scene;
+  Camera camera;
+  std::vector<Light> lights;
+};
+
+absl::StatusOr<Inputs> ReadInputs(const RenderFlags& flags) {
+  absl::StatusOr<std::vector<Light>> lights = SceneLights(flags.scene);
+  if (!lights.ok()) return lights.status();
+  if (absl::Status status = ValidateLights(*lights); !status.ok()) return status;
+  if (absl::Status status = PictureLight(flags, *lights).status(); !status.ok()) return status;
+  absl::StatusOr<Camera> camera = MakeViewCamera(flags.scene, flags.size.width, flags.size.height);
+  if (!camera.ok()) return camera.status();
+  absl::StatusOr<LoadedScene> scene = LoadScene(flags.scene);
+  if (!scene.ok()) return scene.status();
+  return Inputs{*std::move(scene), *std::move(camera), *std::move(lights)};
+}
+
+// What is computed before anything is printed, so that the progress bar has the terminal to itself.
+struct Outcome {
+  ReadbackImage readback;
+  int64_t num_surface = 0;
+  std::vector<LightingCounts> counts;  // per light
+  std::string warning;                 // of CheckSight()
+  Canvas picture = Canvas(1, 1, Rgb());
+};
+
+absl::StatusOr<Outcome> Render(const RenderFlags& flags, const Inputs& inputs) {
+  const RayCaster& caster = inputs.scene.caster;
+  const bool draws = !flags.picture_path.empty();
+  Progress progress(static_cast<int>(inputs.lights.size()) + (draws ? 2 : 1), flags.quiet);
+  progress.Begin("casting rays");
+  const absl::StatusOr<SurfaceImage> image = RenderSurfaces(caster, inputs.camera);
+  if (!image.ok()) return image.status();
+  absl::StatusOr<std::string> warning = CheckSight(caster, *image);
+  if (!warning.ok()) return warning.status();
+  Outcome outcome;
+  outcome.warning = *std::move(warning);
+  outcome.num_surface = image->num_surface;
+  outcome.readback = ReadbackOf(*image);
+  progress.Advance();
+  for (const Light& light : inputs.lights) {
+    progress.Begin(absl::StrCat("shadows of ", light.name));
+    const std::vector<Lighting> lighting = TrueLighting(caster, *image, light);
+    AddShadow(lighting, light.shadow_bit, &outcome.readback);
+    outcome.counts.push_back(CountLighting(lighting));
+    progress.Advance();
+  }
+  if (!draws) return outcome;
+  progress.Begin("drawing");
+  const PixelSize size = flags.picture_size.width > 0 ? flags.picture_size : flags.size;
+  const absl::StatusOr<Camera> camera = MakeViewCamera(flags.scene, size.width, size.height);
+  if (!camera.ok()) return camera.status();
+  const absl::StatusOr<SurfaceImage> surfaces = RenderSurfaces(caster, *camera);
+  if (!surfaces.ok()) return surfaces.status();
+  const absl::StatusOr<Light> light = PictureLight(flags, inputs.lights);
+  if (!light.ok()) return light.status();
+  outcome.picture = DrawLighting(*surfaces, TrueLighting(caster, *surfaces, *light), *light);
+  return outcome;
+}
+
+std::string ReportText(const Inputs& inputs, const Outcome& outcome) {
+  const auto percent = [](int64_t part, int64_t whole) {
+    return absl::StrFormat("%.1f %%", 100.0 * static_cast<double>(part) / whole);
+  };
+  const LoadedScene& scene = inputs.scene;
+  std::string text = absl::StrCat(scene.title, ": ", scene.num_triangles(), " triangles");
+  if (scene.num_dropped > 0) absl::StrAppend(&text, " (", scene.num_dropped, " bad ones dropped)");
+  absl::StrAppend(&text,
+                  ", ",
+                  inputs.camera.width,
+                  "x",
+                  inputs.camera.height,
+                  " pixels, ",
+                  percent(outcome.num_surface, outcome.readback.depth.size()),
+                  " of them surfaces, which are\n");
+  Table table;
+  for (const char* name : {"light", "lit", "shadowed", "facing away"}) table.AddColumn("", name);
+  for (size_t i = 0; i < inputs.lights.size(); ++i) {
+    const LightingCounts& counts = outcome.counts[i];
+    table.AddRow({inputs.lights[i].name,
+                  percent(counts.lit, outcome.num_surface),
+                  percent(counts.shadowed, outcome.num_surface),
+                  percent(counts.facing_away, outcome.num_surface)});
+  }
+  return absl::StrCat(text, table.Text());
+}
+
+void PrintWarnings(const Inputs& inputs, const Outcome& outcome) {
+  if (!outcome.warning.empty()) PrintWarning(outcome.warning);
+  for (size_t i = 0; i < inputs.lights.size(); ++i) {
+    const LightingCounts& counts = outcome.counts[i];
+    const std::string light = absl::StrCat("light \"", inputs.lights[i].name, "\": ");
+    if (counts.lit == 0) {
+      PrintWarning(absl::StrCat(light,
+                                "lights nothing that the camera sees (",
+                                counts.facing_away,
+                                " pixels face away, ",
+                                counts.shadowed,
+                                " are in shadow): there is no shadow edge to fit"));
+    } else if (counts.shadowed == 0) {
+      PrintWarning(absl::StrCat(
+          light, "casts no shadow that the camera sees: there is no shadow edge to fit"));
+    }
+  }
+}
+
+absl::Status WriteLights(const std::string& path, const std::vector<Light>& lights) {
+  v1::LightList list;
+  for (const Light& light : lights) *list.add_lights() = LightToProto(light);
+  const absl::StatusOr<std::string> json = ProtoToJson(list);
+  if (!json.ok()) return json.status();
+  return WriteTextFileAtomically(path, *json);
+}
+
+absl::Status WriteOutputs(const RenderFlags& flags, const Inputs& inputs, const Outcome& outcome) {
+  if (!flags.output_path.empty()) {
+    absl::Status status =
+        WriteThroughTemporary(flags.output_path, [&](const std::string& temporary) {
+          return WriteReadbackExr(temporary, outcome.readback.View(), inputs.lights);
+        });
+    if (!status.ok()) return status;
+  }
+  if (!flags.lights_path.empty()) {
+    if (absl::Status status = WriteLights(flags.lights_path, inputs.lights); !status.ok()) {
+      return status;
+    }
+  }
+  if (flags.picture_path.empty()) return absl::OkStatus();
+  return WritePng(outcome.picture, flags.picture_path);
+}
+
+int Fail(const absl::Status& status) {
+  PrintError(status.message());
+  return kExitBadInput;
+}
+
+int RunRender(const RenderFlags& flags) {
+  if (absl::Status status = CheckOutputs(flags); !status.ok()) return Fail(status);
+  const absl::StatusOr<Inputs> inputs = ReadInputs(flags);
+  if (!inputs.ok()) return Fail(inputs.status());
+  const absl::StatusOr<Outcome> outcome = Render(flags, *inputs);
+  if (!outcome.ok()) return Fail(outcome.status());
+  if (!flags.quiet) {
+    std::fputs(ReportText(*inputs, *outcome).c_str(), stdout);
+    std::fflush(stdout);
+  }
+  PrintWarnings(*inputs, *outcome);
+  if (absl::Status status = WriteOutputs(flags, *inputs, *outcome); !status.ok()) {
+    return Fail(status);
+  }
+  return kExitOk;
+}
+
+}  // namespace
+
+std::function<int()> DeclareRender(CLI::App* app) {
+  const auto flags = std::make_shared<RenderFlags>();
+  DeclareFlags(app, flags.get());
+  return [flags] { return RunRender(*flags); };
+}
+
+}  // namespace lightfit

@@ -1,0 +1,14 @@
+// cli/render.h
+//
+// `lightfit render`: a read-back with exact depth and shadows, and a picture, from a scene.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace lightfit {
+
+// Declares the options; what it returns runs the verb and returns an ExitCode.
+std::function<int()> DeclareRender(CLI::App* app);
+
+}  // namespace lightfit

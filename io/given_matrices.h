@@ -1,0 +1,42 @@
+// io/given_matrices.h
+//
+// Light matrices that somebody else made, from JSON files: to be judged beside ours.
+// In:   a result of `lightfit fit` (a matrix for each light by name), or one matrix:
+//         {"map_from_world": M, "map": {"width": 1024, "height": 1024}}   texels, or
+//         {"clip_from_world": M, "clip": "direct3d"}                      a renderer's
+//       with M as 16 numbers, as 4 rows of 4, or as {"m": [16 numbers]}; row-major, column vectors.
+// Out:  GivenMatrices, in the texels of the map that they are to be compared in.
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "absl/types/optional.h"
+#include "geometry/clip.h"
+
+namespace lightfit {
+
+struct GivenMatrices {
+  std::string name;  // of the row
+
+  absl::optional<Eigen::Matrix4d> for_every_light;
+  std::map<std::string, Eigen::Matrix4d> by_light;  // light name to matrix
+
+  // map_from_world of a light. NotFound says which lights there are.
+  absl::StatusOr<Eigen::Matrix4d> Of(const std::string& light) const;
+};
+
+// `map` is the size to compare in: matrices of maps of another size are scaled to it. Without "map"
+// a single map_from_world is in its texels already; without "clip" a clip_from_world is Vulkan's.
+// Only rows 1, 2 and 4 count.
+absl::StatusOr<GivenMatrices> ParseGivenMatrices(const std::string& name,
+                                                 absl::string_view json,
+                                                 MapSize map);
+absl::StatusOr<GivenMatrices> ReadGivenMatrices(const std::string& name,
+                                                const std::string& path,
+                                                MapSize map);
+
+}  // namespace lightfit

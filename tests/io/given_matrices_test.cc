@@ -1,0 +1,118 @@
+// Matrices of others: every form that is read, and what is said of those that cannot be.
+
+#include "io/given_matrices.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+
+#include "tests/testing/matchers.h"
+
+namespace lightfit {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::IsOk;
+using testing::MatrixNear;
+using testing::StatusIs;
+
+constexpr double kTolerance = 1e-12;  // products of a few roundings, entries up to 1000
+
+Eigen::Matrix4d Some() {
+  Eigen::Matrix4d matrix;
+  matrix << 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 13, 13, 14, 15, 17;
+  return matrix;
+}
+
+constexpr char kFlat[] = "[1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 13, 13, 14, 15, 17]";
+constexpr char kRows[] = "[[1, 2, 3, 4], [5, 6, 7, 8], [9, 10, 11, 13], [13, 14, 15, 17]]";
+
+Eigen::Matrix4d Parsed(const std::string& json, MapSize map) {
+  const absl::StatusOr<GivenMatrices> given = ParseGivenMatrices("engine", json, map);
+  EXPECT_THAT(given, IsOk());
+  if (!given.ok()) return Eigen::Matrix4d::Zero();
+  const absl::StatusOr<Eigen::Matrix4d> matrix = given->Of("any light");
+  EXPECT_THAT(matrix, IsOk());
+  return *matrix;
+}
+
+TEST(GivenMatrices, ReadsEveryFormOfSixteenNumbers) {
+  const std::string flat = kFlat, rows = kRows;
+  for (const std::string& json : {"{\"map_from_world\": " + flat + "}",
+                                  "{\"mapFromWorld\": " + flat + "}",
+                                  "{\"map_from_world\": " + rows + "}",
+                                  "{\"mapFromWorld\": {\"m\": " + flat + "}}"}) {
+    SCOPED_TRACE(json);
+    EXPECT_THAT(Parsed(json, {400, 300}), MatrixNear(Some(), kTolerance));
+  }
+}
+
+TEST(GivenMatrices, ScalesTexelsOfAnotherMap) {
+  const Eigen::Matrix4d matrix =
+      Parsed(std::string("{\"map\": {\"width\": 200, \"height\": 1200}, \"map_from_world\": ") +
+                 kFlat + "}",
+             {400, 300});
+  Eigen::Matrix4d wanted = Some();
+  wanted.row(0) *= 2;
+  wanted.row(1) *= 0.25;
+  EXPECT_THAT(matrix, MatrixNear(wanted, kTolerance));
+}
+
+TEST(GivenMatrices, UndoesTheClipConvention) {
+  const MapSize map = {400, 300};
+  const std::pair<const char*, ClipConvention> conventions[] = {
+      {"", ClipConvention::Vulkan()},
+      {", \"clip\": \"vulkan\"", ClipConvention::Vulkan()},
+      {", \"clip\": \"direct3d\"", ClipConvention::Direct3D()},
+      {", \"clip\": \"opengl\"", ClipConvention::OpenGl()},
+      {", \"clip\": {\"yUp\": true}", ClipConvention::Direct3D()}};
+  for (const auto& [words, convention] : conventions) {
+    SCOPED_TRACE(words);
+    const Eigen::Matrix4d map_from_world =
+        Parsed(std::string("{\"clip_from_world\": ") + kFlat + words + "}", map);
+    const Eigen::Matrix4d clip_from_world = ClipFromMap(map, convention) * map_from_world;
+    EXPECT_THAT(clip_from_world, MatrixNear(Some(), kTolerance));
+  }
+}
+
+TEST(GivenMatrices, AResultHasOneForEachLight) {
+  const std::string json =
+      std::string(
+          "{\"lights\": [{\"name\": \"sun\", \"map\": {\"width\": 200, \"height\": 300}, "
+          "\"mapFromWorld\": {\"m\": ") +
+      kFlat + "}}, {\"name\": \"noon\", \"status\": {\"code\": 9, \"message\": \"none\"}}]}";
+  const absl::StatusOr<GivenMatrices> given = ParseGivenMatrices("engine", json, {400, 300});
+  ASSERT_THAT(given, IsOk());
+  EXPECT_EQ(given->by_light.size(), 1u);
+  const absl::StatusOr<Eigen::Matrix4d> sun = given->Of("sun");
+  ASSERT_THAT(sun, IsOk());
+  EXPECT_EQ((*sun)(0, 3), 8);
+  EXPECT_THAT(given->Of("noon"), StatusIs(absl::StatusCode::kNotFound, HasSubstr("has \"sun\"")));
+}
+
+TEST(GivenMatrices, SaysWhatIsWrong) {
+  const std::pair<std::string, const char*> files[] = {
+      {"", "JSON"},
+      {"[1, 2]", "JSON"},
+      {"{}", "holds no matrix"},
+      {"{\"map_from_world\": [1, 2, 3]}", "has 3 numbers, want 16"},
+      {"{\"map_from_world\": \"identity\"}", "want 16 numbers"},
+      {"{\"map_from_world\": {\"n\": []}}", "want 16 numbers"},
+      {std::string("{\"map_from_world\": ") + kFlat + ", \"map\": {\"width\": 0}}", "map = 0x0"},
+      {std::string("{\"map_from_world\": ") + kFlat + ", \"map\": 3}", "map = 0x0"},
+      {std::string("{\"clip_from_world\": ") + kFlat + ", \"clip\": \"metal\"}", "\"metal\""},
+      {std::string("{\"clip_from_world\": ") + kFlat + ", \"clip\": 7}", "clip: want"},
+      {"{\"lights\": [{\"name\": \"sun\", \"direction\": [0, 0, -1]}]}", "none of them"},
+      {"{\"lights\": 3}", "JSON"}};
+  for (const auto& [json, words] : files) {
+    SCOPED_TRACE(json);
+    EXPECT_THAT(ParseGivenMatrices("engine", json, {400, 300}),
+                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(words)));
+  }
+  EXPECT_THAT(ReadGivenMatrices("engine", "/no/file.json", {400, 300}).status().ToString(),
+              HasSubstr("/no/file.json"));
+}
+
+}  // namespace
+}  // namespace lightfit
