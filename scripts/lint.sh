@@ -23,7 +23,7 @@ check_layout() {
 
 # layer FOLDER ALLOWED...: of the project's own folders, FOLDER includes only those named.
 layer() {
-  local folder=$1 own_folders='geometry|optimizer|proto|lightfit|io|cli|bench|tests' hit hits
+  local folder=$1 own_folders='geometry|optimizer|methods|render|proto|lightfit|io|cli|bench|tests' hit hits
   shift
   [[ -d $folder ]] || return 0
   hits=$(grep -rnE --include='*.h' --include='*.cc' "^#include \"($own_folders)/" "$folder" |
@@ -37,10 +37,12 @@ check_layers() {
   say "one-way dependencies"
   layer geometry geometry
   layer optimizer geometry optimizer
+  layer methods geometry methods
+  layer render geometry optimizer render
   layer proto proto lightfit
   layer io geometry optimizer proto lightfit io
-  layer cli geometry optimizer proto lightfit io cli
-  layer bench geometry optimizer proto lightfit io bench tests
+  layer cli geometry optimizer methods render proto lightfit io cli
+  layer bench geometry optimizer methods render proto lightfit io cli bench tests
   local hits
   hits=$(grep -rnE '^#include ["<](OpenImageIO|google/protobuf|CLI|grpc)' geometry optimizer || true)
   [[ -z $hits ]] || fault "$hits"$'\n'"geometry/ and optimizer/ know nothing of files and protobuf"
@@ -51,14 +53,14 @@ check_layers() {
 check_overviews() {
   say "overviews"
   local folder header
-  for folder in geometry optimizer proto io cli bench tests examples docs scripts; do
+  for folder in geometry optimizer methods render proto io cli bench tests examples docs scripts; do
     [[ -d $folder ]] || continue
     [[ -e $folder/README.md ]] ||
       grep -rlsE "^(//|#) $folder/ : |^// $folder/[a-z_]+\.h : " "$folder" >/dev/null ||
       fault "$folder/: no overview; write $folder/README.md, or open its main header with" \
         "\"// $folder/NAME.h : what it is\""
   done
-  for header in {geometry,optimizer,io}/*.h; do
+  for header in {geometry,optimizer,methods,render,io}/*.h; do
     [[ ! -e $header ]] || head -n 1 "$header" | grep -q "^// $header\b" ||
       fault "$header:1: want the first line to be \"// $header\""
   done
