@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "cli/compare_choice.h"
 #include "cli/method_comparison.h"
 
 namespace lightfit {
 
-enum class Bias { kIdeal, kPractical };
 const char* BiasName(Bias bias);
 
 class WrongPixelTable {

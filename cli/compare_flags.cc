@@ -16,7 +16,6 @@
 namespace lightfit {
 namespace {
 
-constexpr int64_t kMaxPixels = int64_t{1} << 24;  // 4096 x 4096: a gigabyte of surfaces
 constexpr int64_t kMaxTexels = int64_t{1} << 28;  // 16384 x 16384: two gigabytes of depth
 
 constexpr char kExamples[] =
@@ -56,7 +55,7 @@ void DeclareSizes(CLI::App* app, CompareFlags* flags) {
   app->add_option_function<std::string>(
          "--screen",
          [flags](const std::string& text) {
-           ParseInto("--screen", text, ParseImageSize, &flags->screen);
+           ParseInto("--screen", text, ParsePixelSize, &flags->screen);
          },
          "The image whose wrong pixels are counted, pixels [750x750]")
       ->type_name("WIDTHxHEIGHT")
@@ -64,7 +63,7 @@ void DeclareSizes(CLI::App* app, CompareFlags* flags) {
   app->add_option_function<std::string>(
          "--readback",
          [flags](const std::string& text) {
-           ParseInto("--readback", text, ParseImageSize, &flags->readback);
+           ParseInto("--readback", text, ParsePixelSize, &flags->readback);
          },
          "The read-back that is fitted from, pixels [180x180, in the screen's aspect ratio]")
       ->type_name("WIDTHxHEIGHT")
@@ -161,21 +160,6 @@ void DeclareCompareFlags(CLI::App* app, CompareFlags* flags) {
   app->footer(kExamples);
 }
 
-absl::StatusOr<ImageSize> ParseImageSize(const std::string& text) {
-  const std::vector<std::string> sides = absl::StrSplit(text, 'x');
-  ImageSize size;
-  if (sides.size() != 2 || !absl::SimpleAtoi(sides[0], &size.width) ||
-      !absl::SimpleAtoi(sides[1], &size.height)) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("\"", text, "\" is no size, want WIDTHxHEIGHT in pixels such as 750x750"));
-  }
-  if (std::min(size.width, size.height) < 1 || int64_t{size.width} * size.height > kMaxPixels) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(text, ": want 1 to ", kMaxPixels, " pixels, such as 4096x4096"));
-  }
-  return size;
-}
-
 absl::StatusOr<MatrixFlag> ParseMatrixFlag(const std::string& text) {
   const std::pair<std::string, std::string> parts = absl::StrSplit(text, absl::MaxSplits('=', 1));
   if (parts.first.empty() || parts.second.empty()) {
@@ -195,7 +179,7 @@ absl::StatusOr<MatrixFlag> ParseMatrixFlag(const std::string& text) {
   return MatrixFlag{parts.first, parts.second};
 }
 
-ImageSize DefaultReadbackSize(ImageSize screen) {
+PixelSize DefaultReadbackSize(PixelSize screen) {
   constexpr double kSide = 180.0;
   const double stretch = std::sqrt(static_cast<double>(screen.width) / screen.height);
   return {std::max(1, static_cast<int>(std::lround(kSide * stretch))),

@@ -18,12 +18,6 @@
 
 namespace lightfit {
 
-// Pixels.
-struct ImageSize {
-  int width = 0;
-  int height = 0;
-};
-
 // --matrix NAME=FILE.
 struct MatrixFlag {
   std::string name, path;
@@ -36,8 +30,8 @@ struct CompareFlags {
   // understood.
   FitFlags fit;
 
-  ImageSize screen = {750, 750};
-  absl::optional<ImageSize> readback;  // absent: DefaultReadbackSize()
+  PixelSize screen = {750, 750};
+  absl::optional<PixelSize> readback;  // absent: DefaultReadbackSize()
   MapSize map = {400, 400};
   std::vector<MatrixFlag> matrices;
   BiasOptions bias;  // constant_share only
@@ -56,13 +50,10 @@ struct CompareFlags {
 // Declares every option on `app`, to be parsed into `flags`, which must stay where it is.
 void DeclareCompareFlags(CLI::App* app, CompareFlags* flags);
 
-// "750x750".
-absl::StatusOr<ImageSize> ParseImageSize(const std::string& text);
-
 // "engine=matrices.json". The name must not be that of a row which is there already.
 absl::StatusOr<MatrixFlag> ParseMatrixFlag(const std::string& text);
 
 // As many pixels as 180x180 in the screen's ratio of width to height.
-ImageSize DefaultReadbackSize(ImageSize screen);
+PixelSize DefaultReadbackSize(PixelSize screen);
 
 }  // namespace lightfit

@@ -27,7 +27,7 @@ absl::Status ReadSceneInputs(const CompareFlags& flags, CompareInputs* inputs) {
     inputs->warnings.push_back(absl::StrFormat(
         "%d triangles without area or with bad coordinates ignored", inputs->scene->num_dropped));
   }
-  const ImageSize readback = flags.readback.value_or(DefaultReadbackSize(flags.screen));
+  const PixelSize readback = flags.readback.value_or(DefaultReadbackSize(flags.screen));
   absl::StatusOr<CompareStage> stage =
       MakeStage(inputs->scene->caster, *camera, readback.width, readback.height);
   if (!stage.ok()) return stage.status();

@@ -108,10 +108,11 @@ class Page {
   void DrawTruth() {
     const LightingCounts& counts = light_.lighting;
     const int64_t judged = counts.lit + counts.shadowed;
-    Header("truth",
-           absl::StrFormat("%.0f %% of what faces the light in shadow",
-                           judged > 0 ? 100.0 * counts.shadowed / judged : 0.0),
-           kTextColor);
+    Header(
+        "truth",
+        absl::StrCat(PercentText(judged > 0 ? static_cast<double>(counts.shadowed) / judged : 0.0),
+                     " % of what faces the light in shadow"),
+        kTextColor);
     DrawShadows(light_.truth);
     ++cell_;
   }

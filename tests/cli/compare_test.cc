@@ -207,7 +207,7 @@ TEST_F(CompareTest, WrongUsageIsExitCodeOne) {
   const auto with = [](const char* flag, const char* value) {
     return RunLightfit({"compare", "scene.obj", flag, value});
   };
-  ExpectError(with("--screen", "750"), 1, "750x750");
+  ExpectError(with("--screen", "750"), 1, "\"750\" is no size");
   ExpectError(with("--screen", "0x10"), 1, "0x10");
   ExpectError(with("--readback", "99999x99999"), 1, "99999x99999");
   ExpectError(with("--map", "60000x60000"), 1, "16384x16384");
