@@ -150,7 +150,7 @@ TEST(PixelFootprints, SaysWhatIsBehindTheMap) {
   map_from_world.row(3) = Eigen::RowVector4d(0.0, 1.0, 0.0, 0.0);  // w = y
   const auto footprints = PixelFootprints::Create(readback.View(), kSun, map_from_world, {});
   ASSERT_THAT(footprints, IsOk());
-  EXPECT_TRUE(footprints->At(20, 5).has_value());    // y > 0: the far half of the floor
+  EXPECT_TRUE(footprints->At(20, 5).has_value());  // y > 0: the far half of the floor
   EXPECT_TRUE(footprints->At(20, 25)->is_behind);  // y < 0
 }
 
