@@ -41,6 +41,7 @@
 #include "absl/strings/str_format.h"
 #include "bench/fit_input.h"
 #include "bench/medians.h"
+#include "bench/quality_case.h"
 #include "optimizer/axis_evaluator.h"
 #include "optimizer/cover.h"
 #include "optimizer/edge_normals.h"
@@ -59,16 +60,6 @@ constexpr int64_t kMaxRepeated = 500'000;
 
 using Body = std::function<void()>;
 
-// The default search on the published method's objective.
-FitOptions Squared() {
-  const FitOptions published = FitOptions::AsPublished();
-  FitOptions options;
-  options.samples = published.samples;
-  options.metric = published.metric;
-  options.cover = published.cover;
-  return options;
-}
-
 benchmark::internal::Benchmark* Register(const std::string& name, int64_t items, Body body) {
   return benchmark::RegisterBenchmark(name.c_str(),
                                       [items, body = std::move(body)](benchmark::State& state) {
@@ -86,7 +77,7 @@ void RegisterFitLights(const FitInput& input, int num_lights, bool slow) {
   });
   Register("BM_FitLights/squared/" + suffix, num_lights, [&input, num_lights] {
     benchmark::DoNotOptimize(
-        FitLights(input.input.View(), input.Lights(num_lights), kFitMap, Squared()));
+        FitLights(input.input.View(), input.Lights(num_lights), kFitMap, QualityObjective()));
   });
   const bool is_slow = input.num_pixels() * num_lights > kMaxPublished;
   if (is_slow && !slow) return;
@@ -119,10 +110,10 @@ void RegisterStages(const FitInput& input) {
   const int64_t pixels = input.num_pixels();
   const Light& light = input.input.lights.front();
   const uint32_t mask = uint32_t{1} << light.shadow_bit;
-  const SampleOptions published_samples = Squared().samples;
+  const SampleOptions published_samples = QualityObjective().samples;
   Register("BM_ReadOnce/" + input.name, pixels, [&input] { ReadOnce(input.input.View()); });
   Register("BM_Summarize/" + input.name, pixels, [&input, &light] {
-    benchmark::DoNotOptimize(Summarize(input.input.View(), light, Squared()));
+    benchmark::DoNotOptimize(Summarize(input.input.View(), light, QualityObjective()));
   });
   Register("BM_FindReceivers/" + input.name, pixels, [&input, mask, published_samples] {
     benchmark::DoNotOptimize(FindReceivers(input.input.View(), mask, published_samples));
@@ -160,7 +151,7 @@ void RegisterStages(const FitInput& input) {
     benchmark::DoNotOptimize(SummarizeSamples(*samples, *cover, MetricWeights()));
   });
   for (const Refiner refiner : {Refiner::kTinySolver, Refiner::kCeres}) {
-    FitOptions options = Squared();
+    FitOptions options = QualityObjective();
     options.refiner = refiner;
     const char* variant = refiner == Refiner::kCeres ? "ceres/" : "tiny_solver/";
     Register(absl::StrCat("BM_Fit/", variant, input.name), 1, [summary, &light, options] {
