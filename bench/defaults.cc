@@ -268,7 +268,7 @@ absl::Status Run(const Arguments& arguments) {
   {
     Progress progress(arguments.num_lights * static_cast<int>(SceneCases().size()));
     for (size_t i = 0; i < SceneCases().size(); ++i) {
-      const absl::Status status = MeasureScene(i, arguments, variants, progress, &rows);
+      absl::Status status = MeasureScene(i, arguments, variants, progress, &rows);
       if (absl::IsNotFound(status)) {
         std::printf("%s left out: %s\n",
                     SceneCases()[i].name.c_str(),
@@ -293,7 +293,7 @@ absl::Status Run(const Arguments& arguments) {
 }  // namespace
 }  // namespace lightfit
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): options are ours
   lightfit::Arguments arguments;
   CLI::App app("Every default of the fit against its alternatives, judged by wrong pixels.");
   app.add_option("--lights", arguments.num_lights, "Per scene")->capture_default_str();

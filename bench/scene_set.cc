@@ -124,7 +124,8 @@ const std::vector<SceneCase>& SceneCases() {
 }
 
 std::string DefaultSceneFolder() {
-  if (const char* folder = std::getenv("LIGHTFIT_SCENES"); folder != nullptr) return folder;
+  const char* folder = std::getenv("LIGHTFIT_SCENES");  // NOLINT(concurrency-mt-unsafe)
+  if (folder != nullptr) return folder;
   return (std::filesystem::path(LIGHTFIT_REPOSITORY).parent_path() / "shared" / "scenes").string();
 }
 

@@ -39,7 +39,7 @@ const std::vector<std::string> kMethods = {
 absl::Status AddScene(const SceneCase& scene,
                       const Arguments& arguments,
                       Progress& progress,
-                      std::vector<WrongPixelTable*> tables) {
+                      const std::vector<WrongPixelTable*>& tables) {
   const absl::StatusOr<RayCaster> caster = LoadSceneCase(scene, arguments.folder);
   if (!caster.ok()) return caster.status();
   constexpr int kReadback = 180;
@@ -78,7 +78,7 @@ absl::Status Run(const Arguments& arguments) {
     for (const SceneCase& scene : SceneCases()) {
       if (!arguments.only.empty() && scene.name != arguments.only) continue;
       WrongPixelTable table(kMethods);
-      const absl::Status status = AddScene(scene, arguments, progress, {&all, &table});
+      absl::Status status = AddScene(scene, arguments, progress, {&all, &table});
       if (absl::IsNotFound(status)) {
         std::printf("%s left out: %s\n", scene.name.c_str(), std::string(status.message()).c_str());
         continue;
@@ -95,7 +95,7 @@ absl::Status Run(const Arguments& arguments) {
 }  // namespace
 }  // namespace lightfit
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): options are ours
   lightfit::Arguments arguments;
   CLI::App app("Wrong shadow pixels of every method on real scenes.");
   app.add_option("--lights", arguments.num_lights, "Per scene")->capture_default_str();

@@ -101,7 +101,7 @@ absl::Status Run(const Arguments& arguments) {
 }  // namespace
 }  // namespace lightfit
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): options are ours
   lightfit::Arguments arguments;
   CLI::App app("Repeats Table 1 of Chong & Gortler 2007 with ray-cast truth.");
   app.add_option("--lights", arguments.num_lights, "Number of suns")->capture_default_str();

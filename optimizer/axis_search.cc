@@ -68,7 +68,7 @@ absl::StatusOr<SearchOutcome> SearchSquares(const SearchInputs& inputs,
                                             const FitOptions& options) {
   const AffineProblem problem = MakeAffineProblem(summary, map, options);
   std::unique_ptr<AxisEvaluator> evaluator;
-  if (options.sample_by_sample) {
+  if (options.sample_by_sample && inputs.samples != nullptr && inputs.receivers != nullptr) {
     evaluator = std::make_unique<SampleEvaluator>(
         *inputs.samples,
         ReceiverRays(*inputs.receivers, inputs.samples->ray_from_screen),
