@@ -181,7 +181,9 @@ class Page {
                const Row& row,
                MapSize map,
                const std::string& final_label) {
-    RowHeader(light.light.name, Verdict(light), kGainColor);
+    const bool is_behind =
+        light.focused.ok() && light.final->figures.wrong_share > light.focused->figures.wrong_share;
+    RowHeader(light.light.name, Verdict(light), is_behind ? kWarningColor : kGainColor);
     const SampleCounts& counts = light.final->matrix.samples;
     Text(layout_.width - kMargin,
          y_ - kRowHeaderHeight + 30,
@@ -232,7 +234,7 @@ class Page {
           std::pair{HeatColor(0.95), "coarse texels"},
           std::pair{Mix(HeatColor(0.5), {}, 0.45f), "darker: in shadow"},
           std::pair{kBoundaryColor, "shadow edge that counts"},
-          std::pair{kUnratedColor, "not rated: turned away, edge-on or at a depth edge"},
+          std::pair{kUnratedColor, "not rated: turned away or edge-on"},
           std::pair{kReceiverColor, "visible surface in the map"},
           std::pair{kSampleColor, "shadow edge in the map"},
           std::pair{kHullColor, "hull of the shadowed surface"}}) {

@@ -5,9 +5,7 @@
 // Out:  the best fitted map, where the search began, the trace.   math.md 4 and 6
 #pragma once
 
-#include <Eigen/Core>
 #include <string>
-#include <vector>
 
 #include "absl/status/statusor.h"
 #include "geometry/clip.h"
@@ -41,18 +39,5 @@ struct SearchOutcome {
 absl::StatusOr<SearchOutcome> SearchAxis(const SearchInputs& inputs,
                                          MapSize map,
                                          const FitOptions& options);
-
-// The weights under which squares stand for footprints: each sample's weight over its footprint in
-// `map_from_ray`, which is never taken to be less than a small share of their mean. The second is
-// the weighted sum of the footprints, the third that of what the weights take them to be.
-// math.md 4
-struct L1Weights {
-  std::vector<double> weights;
-  double footprint_sum = 0.0;
-  double floored_sum = 0.0;
-};
-L1Weights WeightsForL1(const Samples& samples,
-                       const MetricWeights& metric,
-                       const Eigen::Matrix3d& map_from_ray);
 
 }  // namespace lightfit

@@ -5,10 +5,10 @@
 
 #include "absl/strings/str_format.h"
 #include "geometry/homography.h"
-#include "optimizer/axis_search.h"
 #include "optimizer/cover.h"
 #include "optimizer/footprint.h"
 #include "optimizer/foretell.h"
+#include "optimizer/l1_weights.h"
 #include "optimizer/receivers.h"
 #include "optimizer/samples.h"
 

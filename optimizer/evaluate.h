@@ -28,8 +28,7 @@ struct MatrixFigures {
 // several matrices compare when read-back, light and options are the same.
 //
 // InvalidArgument when an input is wrong or the matrix is not one of this light (MapFromRay());
-// FailedPrecondition when there are no samples to judge by, or some have w <= 0: the map cannot
-// show them.
+// FailedPrecondition when all samples have w <= 0. Without any samples energy and footprints are 0.
 absl::StatusOr<MatrixFigures> EvaluateMatrix(const Readback& readback,
                                              const Light& light,
                                              const Eigen::Matrix4d& map_from_world,

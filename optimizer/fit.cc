@@ -9,6 +9,7 @@
 
 #include "absl/strings/str_format.h"
 #include "optimizer/axis_search.h"
+#include "optimizer/l1_weights.h"
 #include "optimizer/receivers.h"
 
 namespace lightfit {

@@ -12,6 +12,7 @@
 #include "optimizer/axis_search.h"
 #include "optimizer/fit.h"
 #include "optimizer/global_search.h"
+#include "optimizer/l1_weights.h"
 #include "tests/testing/matchers.h"
 #include "tests/testing/metric_of.h"
 #include "tests/testing/test_scene.h"
@@ -97,8 +98,8 @@ double SlowTwin(const Readback& readback, const Light& light, const FitOptions& 
 }
 
 TEST(FitLightL1, IsAsGoodAsSearchingAnewInEveryRound) {
-  // Polishing may stay in another valley than a search anew finds.
-  constexpr double kAllowed = 1.03, kAllowedMedian = 1.0001;
+  // Without the edges' directions polishing stayed in another valley once, 1.0175 times as high.
+  constexpr double kAllowed = 1.03, kAllowedByDefault = 1.001, kAllowedMedian = 1.0001;
   std::vector<double> ratios;
   for (uint64_t seed = 1; seed <= 5; ++seed) {
     const TestScene scene(seed, 3);
@@ -108,8 +109,9 @@ TEST(FitLightL1, IsAsGoodAsSearchingAnewInEveryRound) {
         const auto matrix = FitLight(scene.View(), light, kMap, options);
         if (!matrix.ok()) continue;
         ratios.push_back(matrix->energy / SlowTwin(scene.View(), light, options));
-        EXPECT_LE(ratios.back(), kAllowed) << matrix->BriefReport() << ", seed " << seed
-                                           << ", metric " << static_cast<int>(metric);
+        EXPECT_LE(ratios.back(), metric == FitOptions().metric ? kAllowedByDefault : kAllowed)
+            << matrix->BriefReport() << ", seed " << seed << ", metric "
+            << static_cast<int>(metric);
       }
     }
   }
