@@ -36,21 +36,6 @@ std::vector<Eigen::Vector3d> ReceiverRays(const Receivers& receivers,
   return rays;
 }
 
-AffineProblem MakeAffineProblem(const Summary& summary, MapSize map, const FitOptions& options) {
-  AffineProblem problem;
-  problem.map = map;
-  problem.affine = options.affine;
-  // Without samples no enclosing shape has more energy than another.
-  if (summary.counts.used == 0 && problem.affine == Affine::kMinEnergyParallelogram) {
-    problem.affine = Affine::kMinAreaRectangle;
-  }
-  problem.ray_space = options.ray_space;
-  problem.normalized_from_ray = summary.cover.normalized_from_ray;
-  problem.margin_percent = options.margin_percent;
-  problem.margin_texels = options.margin_texels;
-  return problem;
-}
-
 // The receivers' mean, or the middle of their cone where the mean cannot be used.
 std::optional<AffineFit> StartFit(const Summary& summary, AxisEvaluator& evaluator) {
   const Eigen::Vector3d mean =
@@ -128,6 +113,25 @@ absl::StatusOr<SearchOutcome> SearchSquares(const SearchInputs& inputs,
   return outcome;
 }
 
+// Whether the options ask for more than what is published.
+bool Polishes(const FitOptions& options) {
+  return options.search == Search::kGlobal || options.search == Search::kRotationLineSearchRefined;
+}
+
+// A fit from a summary alone is done once for a whole shot, and must not depend on how the frames
+// came together: to the end of what double precision tells.
+void PolishExactly(const Summary& summary,
+                   MapSize map,
+                   const FitOptions& options,
+                   SearchOutcome* outcome) {
+  const AffineProblem problem = MakeAffineProblem(summary, map, options);
+  RefineResult polished =
+      PolishAxis(summary, problem, options.min_w, Polish::kExact, outcome->result.fit);
+  outcome->result.fit = polished.fit;
+  outcome->evaluations += polished.evaluations;
+  outcome->result.trace.push_back({"exact", outcome->evaluations, polished.fit.energy});
+}
+
 // Where the search began, judged by the sum of footprints.
 absl::StatusOr<SearchOutcome> StartOfL1(const SearchInputs& inputs,
                                         MapSize map,
@@ -150,8 +154,6 @@ absl::StatusOr<SearchOutcome> StartOfL1(const SearchInputs& inputs,
 absl::StatusOr<SearchOutcome> SearchL1(const SearchInputs& inputs,
                                        MapSize map,
                                        const FitOptions& options) {
-  const bool polishes =
-      options.search == Search::kGlobal || options.search == Search::kRotationLineSearchRefined;
   absl::StatusOr<SearchOutcome> best = StartOfL1(inputs, map, options);
   if (!best.ok()) return best.status();
   std::vector<TraceStep> trace = best->result.trace;
@@ -162,7 +164,7 @@ absl::StatusOr<SearchOutcome> SearchL1(const SearchInputs& inputs,
   for (int round = 0; round < options.reweighting_rounds; ++round) {
     const Summary summary =
         SummarizeSamples(reweighted, inputs.summary.cover, inputs.summary.metric);
-    if (round > 0 && polishes) {
+    if (round > 0 && Polishes(options)) {
       const AffineProblem problem = MakeAffineProblem(summary, map, options);
       SummaryEvaluator evaluator(summary, problem, options.min_w);
       const std::optional<AffineFit> start =
@@ -208,13 +210,32 @@ SearchOutcome AsFootprintSums(SearchOutcome outcome, double footprint_sum) {
 
 }  // namespace
 
+AffineProblem MakeAffineProblem(const Summary& summary, MapSize map, const FitOptions& options) {
+  AffineProblem problem;
+  problem.map = map;
+  problem.affine = options.affine;
+  // Without samples no enclosing shape has more energy than another.
+  if (summary.counts.used == 0 && problem.affine == Affine::kMinEnergyParallelogram) {
+    problem.affine = Affine::kMinAreaRectangle;
+  }
+  problem.ray_space = options.ray_space;
+  problem.normalized_from_ray = summary.cover.normalized_from_ray;
+  problem.margin_percent = options.margin_percent;
+  problem.margin_texels = options.margin_texels;
+  return problem;
+}
+
 absl::StatusOr<SearchOutcome> SearchAxis(const SearchInputs& inputs,
                                          MapSize map,
                                          const FitOptions& options) {
   const bool is_l1 = IsL1(options.metric) && inputs.summary.counts.used > 0;
   if (is_l1 && inputs.samples != nullptr) return SearchL1(inputs, map, options);
   absl::StatusOr<SearchOutcome> outcome = SearchSquares(inputs, inputs.summary, map, options);
-  if (!outcome.ok() || !is_l1) return outcome;
+  if (!outcome.ok()) return outcome;
+  if (inputs.samples == nullptr && Polishes(options)) {
+    PolishExactly(inputs.summary, map, options, &*outcome);
+  }
+  if (!is_l1) return outcome;
   return AsFootprintSums(*std::move(outcome), inputs.summary.footprint_sum);
 }
 

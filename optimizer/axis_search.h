@@ -10,6 +10,7 @@
 #include "absl/status/statusor.h"
 #include "geometry/clip.h"
 #include "geometry/light.h"
+#include "optimizer/affine.h"
 #include "optimizer/fit_options.h"
 #include "optimizer/line_search.h"
 #include "optimizer/receivers.h"
@@ -32,6 +33,9 @@ struct SearchOutcome {
   int evaluations = 0;
   std::string solver_report;
 };
+
+// What the affine part is fitted for, as the options ask.
+AffineProblem MakeAffineProblem(const Summary& summary, MapSize map, const FitOptions& options);
 
 // Runs FitOptions::search in FitOptions::metric. The L1 metrics follow it on reweighted samples;
 // from a summary alone they take the weights that are in it (Summary::footprint_sum).

@@ -20,19 +20,6 @@ namespace {
 
 using Matrix34d = Eigen::Matrix<double, 3, 4>;
 
-absl::Status SurroundedError(const Light& light) {
-  return absl::FailedPreconditionError(absl::StrFormat(
-      "light \"%s\": at (%g, %g, %g) it hangs among its receivers: no single map has all of them "
-      "in "
-      "front of it. Render its shadow with a cube map or a dual paraboloid map, split the "
-      "receivers "
-      "into several maps, or leave receivers that it does not light out of the read-back",
-      light.name,
-      light.position.x(),
-      light.position.y(),
-      light.position.z()));
-}
-
 absl::Status FlatError(const Light& light) {
   return absl::FailedPreconditionError(absl::StrFormat(
       "light \"%s\": all receivers lie in one plane with the light (or are one point), so that its "
@@ -235,6 +222,19 @@ DepthRange RangeOverBoxes(const TileGrid& grid,
 
 }  // namespace
 
+absl::Status SurroundedError(const Light& light) {
+  return absl::FailedPreconditionError(absl::StrFormat(
+      "light \"%s\": at (%g, %g, %g) it hangs among its receivers: no single map has all of them "
+      "in "
+      "front of it. Render its shadow with a cube map or a dual paraboloid map, split the "
+      "receivers "
+      "into several maps, or leave receivers that it does not light out of the read-back",
+      light.name,
+      light.position.x(),
+      light.position.y(),
+      light.position.z()));
+}
+
 absl::StatusOr<RayCover> CoverReceivers(const Receivers& receivers,
                                         const Light& light,
                                         Cover which) {
@@ -250,6 +250,7 @@ absl::StatusOr<RayCover> CoverReceivers(const Receivers& receivers,
   const Eigen::RowVector4d scale_from_screen = receivers.world_from_screen.row(3);
   const TileGrid* boxes = &tiles.grids[0];
   RayCover cover;
+  cover.nothing_shadowed = which == Cover::kShadowed && covers_all;
   Eigen::Matrix3d frame_from_ray = Eigen::Matrix3d::Identity();
   Eigen::RowVector4d depth_from_screen;
   TileGrid pixels;
@@ -297,45 +298,32 @@ absl::StatusOr<RayCover> CoverReceivers(const Receivers& receivers,
   return cover;
 }
 
-absl::StatusOr<RayCover> MergeCovers(const RayCover& a, const RayCover& b, const Light& light) {
-  std::vector<Eigen::Vector3d> rays;
-  const auto append_rays = [&rays](const RayCover& cover) {
-    const Eigen::Matrix3d ray_from_normalized = cover.normalized_from_ray.inverse();
-    for (const Eigen::Vector2d& vertex : cover.hull) {
-      rays.push_back(ray_from_normalized * vertex.homogeneous());
-    }
-  };
-  append_rays(a);
-  append_rays(b);
-
-  RayCover merged;
+absl::StatusOr<RayCover> CoverRays(absl::Span<const Eigen::Vector3d> rays,
+                                   DepthRange depth,
+                                   const Eigen::Vector3d& mean_ray,
+                                   const Light& light) {
+  RayCover cover;
+  cover.depth = depth;
   Eigen::Matrix3d frame_from_ray = Eigen::Matrix3d::Identity();
   if (light.kind == Light::Kind::kPoint) {
     const std::optional<Eigen::Vector3d> axis = FeasibleAxis(rays);
     if (!axis.has_value()) return SurroundedError(light);
     frame_from_ray = FrameAlong(*axis);
-    merged.mean_ray = (a.mean_ray + b.mean_ray).normalized();
-    // Along the new axis a ray at depth 1 of the old one has depth `ratio`, extreme at hull rays.
-    merged.depth = {std::numeric_limits<double>::infinity(), 0.0};
-    size_t ray = 0;
-    for (const RayCover* cover : {&a, &b}) {
-      for (size_t i = 0; i < cover->hull.size(); ++i, ++ray) {
-        const double ratio = axis->dot(rays[ray]);
-        merged.depth.near = std::min(merged.depth.near, ratio * cover->depth.near);
-        merged.depth.far = std::max(merged.depth.far, ratio * cover->depth.far);
-      }
-    }
-  } else {
-    merged.depth = {std::min(a.depth.near, b.depth.near), std::max(a.depth.far, b.depth.far)};
+    // A receiver at some distance is nearer than that along the axis, by its ray's cosine.
+    double min_cos = 1.0;
+    for (const Eigen::Vector3d& ray : rays)
+      min_cos = std::min(min_cos, axis->dot(ray) / ray.norm());
+    cover.depth.near = depth.near * min_cos;
+    cover.mean_ray = mean_ray.squaredNorm() > 0.0 ? mean_ray.normalized() : *axis;
   }
   std::vector<Eigen::Vector2d> points;
   points.reserve(rays.size());
   for (const Eigen::Vector3d& ray : rays) points.push_back((frame_from_ray * ray).hnormalized());
-  merged.hull = ConvexHull(std::move(points));
-  const std::optional<Eigen::Matrix3d> normalized = NormalizeRays(frame_from_ray, &merged.hull);
+  cover.hull = ConvexHull(std::move(points));
+  const std::optional<Eigen::Matrix3d> normalized = NormalizeRays(frame_from_ray, &cover.hull);
   if (!normalized.has_value()) return FlatError(light);
-  merged.normalized_from_ray = *normalized;
-  return merged;
+  cover.normalized_from_ray = *normalized;
+  return cover;
 }
 
 }  // namespace lightfit

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "absl/status/statusor.h"
+#include "absl/types/span.h"
 #include "geometry/homography.h"
 #include "geometry/light.h"
 #include "geometry/polygon.h"
@@ -31,6 +32,9 @@ struct RayCover {
   // theirs. Point light: of X'_3, the depth along the third row of N, which is a unit vector.
   // Directional light: of the depth along the direction of travel.
   DepthRange depth;
+
+  // Cover::kShadowed where nothing is shadowed: all receivers are covered for want of any.
+  bool nothing_shadowed = false;
 };
 
 // The hull is that of the rays through the centres of all pixels to cover, exactly: tiles are
@@ -46,7 +50,15 @@ absl::StatusOr<RayCover> CoverReceivers(const Receivers& receivers,
                                         const Light& light,
                                         Cover cover = Cover::kReceivers);
 
-// The cover of both, in coordinates of its own. Both must be of the same light.
-absl::StatusOr<RayCover> MergeCovers(const RayCover& a, const RayCover& b, const Light& light);
+// The cover of rays that are known by their hull alone: `rays` in light space, `depth` as in
+// RayCover for a directional light, distances from a point light. `mean_ray` is not used where it
+// is zero. FailedPrecondition as CoverReceivers().
+absl::StatusOr<RayCover> CoverRays(absl::Span<const Eigen::Vector3d> rays,
+                                   DepthRange depth,
+                                   const Eigen::Vector3d& mean_ray,
+                                   const Light& light);
+
+// FailedPrecondition: receivers all around the light. For those who find out by other means.
+absl::Status SurroundedError(const Light& light);
 
 }  // namespace lightfit

@@ -11,6 +11,7 @@
 // Threads: functions share nothing; call them from as many threads as you like.
 #pragma once
 
+#include <Eigen/Core>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -38,10 +39,10 @@ std::vector<absl::StatusOr<LightMatrix>> FitLights(const Readback& readback,
                                                    const FitOptions& options = {});
 
 // The two halves of FitLight: everything the read-back has to say about this light, in about a
-// kilobyte, and the fit from that alone. Summaries of one light add (MergeSummaries). For the L1
-// metrics Summarize() weighs the samples by their footprints in the best map of this read-back, and
-// Fit() keeps to those weights; its energies are then bounds, see Summary::footprint_sum.
-// Statistics beyond the RMS are left at 0.
+// kilobyte, and the fit from that alone. Summaries of one light add (optimizer/summary_total.h).
+// For the L1 metrics Summarize() weighs the samples by their footprints in the best map of this
+// read-back, and Fit() keeps to those weights; its energies are then bounds, see
+// Summary::footprint_sum. Statistics beyond the RMS are left at 0.
 absl::StatusOr<Summary> Summarize(const Readback& readback,
                                   const Light& light,
                                   const FitOptions& options = {});
@@ -49,5 +50,14 @@ absl::StatusOr<LightMatrix> Fit(const Summary& summary,
                                 const Light& light,
                                 MapSize map,
                                 const FitOptions& options = {});
+
+// The same halves with one map for many frames in mind: for the L1 metrics the samples weigh what
+// they do in `map_from_world` (texels, of any map size), the best of all frames so far, say.
+// Summarised, added and fitted once more, energies become what the sum of footprints is, and their
+// minimum the shot's own.   math.md 4. InvalidArgument when the matrix is not one of this light.
+absl::StatusOr<Summary> SummarizeInMap(const Readback& readback,
+                                       const Light& light,
+                                       const Eigen::Matrix4d& map_from_world,
+                                       const FitOptions& options = {});
 
 }  // namespace lightfit

@@ -44,7 +44,7 @@ const char* StopReasonName(StopReason reason);
 
 // One accepted step of the search.
 struct TraceStep {
-  std::string station;  // "start", "line_search", "grid", "refine", "polish"
+  std::string station;  // "start", "line_search", "grid", "refine", "polish", "exact"
   int evaluations = 0;  // matrices evaluated so far
   double energy = 0;
 };

@@ -1,7 +1,6 @@
 #include "optimizer/summary.h"
 
 #include <Eigen/LU>
-#include <utility>
 
 #include "optimizer/summary_kernel.h"
 
@@ -21,32 +20,6 @@ SymmetricVector OuterSquare(const Eigen::Vector3d& p) {
   SymmetricVector outer;
   for (int i = 0; i < 6; ++i) outer(i) = kMultiplicity[i] * p(kRow[i]) * p(kColumn[i]);
   return outer;
-}
-
-// The 6x6 matrix that maps the entries of a symmetric A to those of M A M'.
-Eigen::Matrix<double, 6, 6> CongruenceMatrix(const Eigen::Matrix3d& m) {
-  Eigen::Matrix<double, 6, 6> congruence;
-  for (int i = 0; i < 6; ++i) {
-    const int a = kRow[i], b = kColumn[i];
-    for (int j = 0; j < 6; ++j) {
-      const int c = kRow[j], d = kColumn[j];
-      congruence(i, j) = m(a, c) * m(b, d) + (c == d ? 0.0 : m(a, d) * m(b, c));
-    }
-  }
-  return congruence;
-}
-
-SampleCounts AddCounts(const SampleCounts& a, const SampleCounts& b) {
-  SampleCounts sum;
-  sum.receivers = a.receivers + b.receivers;
-  sum.invalid_depth = a.invalid_depth + b.invalid_depth;
-  sum.candidates = a.candidates + b.candidates;
-  sum.background = a.background + b.background;
-  sum.discontinuity = a.discontinuity + b.discontinuity;
-  sum.facing_away = a.facing_away + b.facing_away;
-  sum.edge_on = a.edge_on + b.edge_on;
-  sum.used = a.used + b.used;
-  return sum;
 }
 
 }  // namespace
@@ -90,8 +63,8 @@ EnergyGradient EnergyTensor::EnergyAndGradient(const Eigen::Matrix3d& map_from_r
 
 EnergyTensor EnergyTensor::Transformed(const Eigen::Matrix3d& new_from_old) const {
   const Eigen::Matrix3d contragredient = new_from_old.inverse().transpose();
-  return EnergyTensor(CongruenceMatrix(new_from_old) * entries_ *
-                      CongruenceMatrix(contragredient).transpose());
+  return EnergyTensor(SymmetricCongruence<double>(new_from_old) * entries_ *
+                      SymmetricCongruence<double>(contragredient).transpose());
 }
 
 Eigen::Matrix<double, 9, 9> EnergyTensor::AsQuadraticForm() const {
@@ -118,34 +91,6 @@ Summary SummarizeSamples(const Samples& samples,
   for (const double weight : samples.weight) summary.total_weight += weight;
   summary.tensor = EnergyTensor(internal::AccumulateTensor(samples, metric));
   return summary;
-}
-
-absl::StatusOr<Summary> MergeSummaries(const Summary& a, const Summary& b, const Light& light) {
-  if (a.metric.across_edge != b.metric.across_edge || a.metric.whole != b.metric.whole) {
-    return absl::InvalidArgumentError(
-        "summaries of different metrics do not add: summarise both with the same FitOptions");
-  }
-  const bool both_have_samples = a.counts.used > 0 && b.counts.used > 0;
-  if (both_have_samples && (a.footprint_sum > 0.0) != (b.footprint_sum > 0.0)) {
-    return absl::InvalidArgumentError(
-        "summaries of an L1 and a squared metric do not add: summarise both with the same "
-        "FitOptions");
-  }
-  absl::StatusOr<RayCover> cover = MergeCovers(a.cover, b.cover, light);
-  if (!cover.ok()) return cover.status();
-  Summary merged;
-  merged.metric = a.metric;
-  merged.footprint_sum = a.footprint_sum + b.footprint_sum;
-  merged.total_weight = a.total_weight + b.total_weight;
-  merged.counts = AddCounts(a.counts, b.counts);
-  const auto moved = [&cover](const Summary& summary) {
-    return summary.tensor
-        .Transformed(cover->normalized_from_ray * summary.cover.normalized_from_ray.inverse())
-        .entries();
-  };
-  merged.tensor = EnergyTensor(moved(a) + moved(b));
-  merged.cover = *std::move(cover);
-  return merged;
 }
 
 }  // namespace lightfit

@@ -2,15 +2,15 @@
 //
 // Thirty-six numbers replace the samples: energy and gradient of any map in O(1).
 // In:   Samples and their RayCover.
-// Out:  Summary {tensor, weight, counts, cover}, about a kilobyte, additive.   math.md 4, (6)-(8)
+// Out:  Summary {tensor, weight, counts, cover}, about a kilobyte; they add,
+// optimizer/summary_total.h.
+//       math.md 4, (6)-(8)
 //
 // Symbols: T tensor, X normalised ray, G = D'D, p axis, [r1 r2 r3] = H^-1.
 #pragma once
 
 #include <Eigen/Core>
 
-#include "absl/status/statusor.h"
-#include "geometry/light.h"
 #include "optimizer/cover.h"
 #include "optimizer/footprint.h"
 #include "optimizer/samples.h"
@@ -21,6 +21,10 @@ namespace lightfit {
 using SymmetricVector = Eigen::Matrix<double, 6, 1>;
 SymmetricVector ToSymmetricVector(const Eigen::Matrix3d& symmetric);
 Eigen::Matrix3d FromSymmetricVector(const SymmetricVector& entries);
+
+// The 6x6 matrix that maps the entries of a symmetric A to those of M A M'.
+template <typename Scalar>
+Eigen::Matrix<Scalar, 6, 6> SymmetricCongruence(const Eigen::Matrix<Scalar, 3, 3>& m);
 
 // T_(ab)(cd) = sum of weight X_a X_b G_cd: rows run over (ab), columns over (cd).   math.md (6)
 class EnergyTensor {
@@ -66,8 +70,20 @@ Summary SummarizeSamples(const Samples& samples,
                          const RayCover& cover,
                          const MetricWeights& metric);
 
-// The summary of both sets of samples together, for one light: tiles, frames, machines.
-// InvalidArgument if the metrics differ, FailedPrecondition if no map covers both.
-absl::StatusOr<Summary> MergeSummaries(const Summary& a, const Summary& b, const Light& light);
+template <typename Scalar>
+Eigen::Matrix<Scalar, 6, 6> SymmetricCongruence(const Eigen::Matrix<Scalar, 3, 3>& m) {
+  constexpr int kRow[6] = {0, 0, 0, 1, 1, 2};
+  constexpr int kColumn[6] = {0, 1, 2, 1, 2, 2};
+  Eigen::Matrix<Scalar, 6, 6> congruence;
+  for (int i = 0; i < 6; ++i) {
+    const int a = kRow[i], b = kColumn[i];
+    for (int j = 0; j < 6; ++j) {
+      const int c = kRow[j], d = kColumn[j];
+      congruence(i, j) = m(a, c) * m(b, d);
+      if (c != d) congruence(i, j) += m(a, d) * m(b, c);
+    }
+  }
+  return congruence;
+}
 
 }  // namespace lightfit

@@ -13,6 +13,7 @@
 #include "optimizer/fit.h"
 #include "optimizer/global_search.h"
 #include "optimizer/l1_weights.h"
+#include "optimizer/summary_total.h"
 #include "tests/testing/matchers.h"
 #include "tests/testing/metric_of.h"
 #include "tests/testing/test_scene.h"
@@ -247,7 +248,7 @@ TEST(FitFromSummaryL1, MergedFramesGiveAMapForBothAndABound) {
       const auto a = Summarize(frames[0].View(), light, options);
       const auto b = Summarize(frames[1].View(), light, options);
       if (!a.ok() || !b.ok()) continue;
-      const auto merged = MergeSummaries(*a, *b, light);
+      const auto merged = MergeSummaries({*a, *b}, light);
       ASSERT_THAT(merged, IsOk());
       EXPECT_EQ(merged->footprint_sum, a->footprint_sum + b->footprint_sum);
       const auto matrix = Fit(*merged, light, kMap, options);
@@ -270,7 +271,7 @@ TEST(MergeSummaries, RefusesToMixFootprintsWithSquaredOnes) {
   const auto l2 = Summarize(scene.View(), sun, OptionsFor(Metric::kL2));
   ASSERT_THAT(l1, IsOk());
   ASSERT_THAT(l2, IsOk());
-  for (const auto& mixed : {MergeSummaries(*l1, *l2, sun), MergeSummaries(*l2, *l1, sun)}) {
+  for (const auto& mixed : {MergeSummaries({*l1, *l2}, sun), MergeSummaries({*l2, *l1}, sun)}) {
     EXPECT_THAT(mixed, StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("L1")));
   }
   // A frame without any sample has no weights, and adds to either.
@@ -278,8 +279,8 @@ TEST(MergeSummaries, RefusesToMixFootprintsWithSquaredOnes) {
   empty.footprint_sum = 0.0;
   empty.counts.used = 0;
   empty.tensor = EnergyTensor();
-  EXPECT_THAT(MergeSummaries(*l1, empty, sun), IsOk());
-  EXPECT_THAT(MergeSummaries(empty, *l2, sun), IsOk());
+  EXPECT_THAT(MergeSummaries({*l1, empty}, sun), IsOk());
+  EXPECT_THAT(MergeSummaries({empty, *l2}, sun), IsOk());
 }
 
 }  // namespace

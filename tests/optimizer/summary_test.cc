@@ -4,24 +4,18 @@
 
 #include <Eigen/Dense>
 
-#include "optimizer/fit.h"
-#include "optimizer/receivers.h"
 #include "optimizer/summary_kernel.h"
 #include "tests/testing/matchers.h"
 #include "tests/testing/random_cases.h"
-#include "tests/testing/test_scene.h"
 
 namespace lightfit {
 namespace {
 
-using ::testing::HasSubstr;
-using testing::IsOk;
 using testing::PatchCase;
 using testing::Random;
 using testing::RandomMap;
 using testing::RandomPatchCase;
 using testing::RelativeError;
-using testing::StatusIs;
 
 EnergyTensor TensorOf(const Samples& samples) {
   return EnergyTensor(internal::AccumulateTensor(samples, {0.0, 1.0}));
@@ -91,121 +85,6 @@ TEST(EnergyTensor, AtAxisIsTheWeightedSumOfMetrics) {
     }
     EXPECT_LE((TensorOf(patches.normalized).AtAxis(p) - sum).norm(), 1e-12 * sum.norm());
   }
-}
-
-// Two cameras in one scene: what a shot of two frames is.
-struct TwoFrames {
-  std::vector<Light> lights;
-  SyntheticReadback frames[2];
-
-  explicit TwoFrames(uint64_t seed) {
-    const BoxScene scene = MakeBoxScene(seed);
-    lights = RandomLights(scene, seed, 3);
-    for (int i = 0; i < 2; ++i) {
-      frames[i] = Render(scene, RandomCamera(scene, 2 * seed + i, 80, 60), lights);
-    }
-  }
-};
-
-// The samples of one frame in the coordinates of any cover.
-Samples SamplesIn(const SyntheticReadback& frame, const Light& light, const RayCover& cover) {
-  const Receivers receivers =
-      *FindReceivers(frame.View(), 1u << light.shadow_bit, testing::SquaredFootprints().samples);
-  return SelectSamples(receivers, light, cover.normalized_from_ray, /*with_edge_normals=*/false);
-}
-
-TEST(MergeSummaries, EqualsSummaryOfTheUnion) {
-  const FitOptions options = testing::SquaredFootprints();
-  Random random(145);
-  int num_merged = 0;
-  for (uint64_t seed = 1; seed <= 10; ++seed) {
-    const TwoFrames shot(seed);
-    for (const Light& light : shot.lights) {
-      const auto a = Summarize(shot.frames[0].View(), light, options);
-      const auto b = Summarize(shot.frames[1].View(), light, options);
-      if (!a.ok() || !b.ok()) continue;
-      const auto merged = MergeSummaries(*a, *b, light);
-      ASSERT_THAT(merged, IsOk());
-      ++num_merged;
-      EXPECT_EQ(merged->counts.used, a->counts.used + b->counts.used);
-      EXPECT_EQ(merged->counts.receivers, a->counts.receivers + b->counts.receivers);
-      EXPECT_EQ(merged->total_weight, a->total_weight + b->total_weight);
-      const Samples samples[] = {SamplesIn(shot.frames[0], light, merged->cover),
-                                 SamplesIn(shot.frames[1], light, merged->cover)};
-      for (int k = 0; k < 10; ++k) {
-        const Eigen::Matrix3d map_from_ray = RandomMap(random, merged->cover.hull);
-        const double sum = Energy(map_from_ray, samples[0], merged->metric) +
-                           Energy(map_from_ray, samples[1], merged->metric);
-        EXPECT_LE(RelativeError(merged->tensor.Energy(map_from_ray), sum), 1e-11)
-            << light.name << ", seed " << seed;
-      }
-    }
-  }
-  EXPECT_GE(num_merged, 20);
-}
-
-TEST(MergeSummaries, Commutes) {
-  const FitOptions options = testing::SquaredFootprints();
-  Random random(146);
-  for (uint64_t seed = 1; seed <= 6; ++seed) {
-    const TwoFrames shot(seed);
-    for (const Light& light : shot.lights) {
-      const auto a = Summarize(shot.frames[0].View(), light, options);
-      const auto b = Summarize(shot.frames[1].View(), light, options);
-      if (!a.ok() || !b.ok()) continue;
-      const auto ab = MergeSummaries(*a, *b, light);
-      const auto ba = MergeSummaries(*b, *a, light);
-      ASSERT_THAT(ab, IsOk());
-      ASSERT_THAT(ba, IsOk());
-      EXPECT_LE(RelativeError(ab->cover.depth.near, ba->cover.depth.near), 1e-9);
-      EXPECT_LE(RelativeError(ab->cover.depth.far, ba->cover.depth.far), 1e-9);
-      const Eigen::Matrix3d ba_from_ab =
-          ba->cover.normalized_from_ray * ab->cover.normalized_from_ray.inverse();
-      for (int k = 0; k < 10; ++k) {
-        const Eigen::Matrix3d map_from_ba = RandomMap(random, ba->cover.hull);
-        EXPECT_LE(RelativeError(ba->tensor.Energy(map_from_ba),
-                                ab->tensor.Energy(map_from_ba * ba_from_ab)),
-                  1e-10);
-      }
-    }
-  }
-}
-
-// Every ray of either cover lies inside the merged hull.
-TEST(MergeSummaries, CoversBoth) {
-  for (const FitOptions& options : {FitOptions(), testing::SquaredFootprints()}) {
-    int num_fitted = 0;
-    for (uint64_t seed = 1; seed <= 6; ++seed) {
-      SCOPED_TRACE(seed);
-      const TwoFrames shot(seed);
-      for (const Light& light : shot.lights) {
-        const auto a = Summarize(shot.frames[0].View(), light, options);
-        const auto b = Summarize(shot.frames[1].View(), light, options);
-        if (!a.ok() || !b.ok()) continue;
-        const auto merged = MergeSummaries(*a, *b, light);
-        ASSERT_THAT(merged, IsOk());
-        const auto matrix = Fit(*merged, light, {512, 512}, options);
-        if (!matrix.ok()) continue;
-        testing::ExpectCovers(*matrix, shot.frames[0].View(), light, options.cover);
-        testing::ExpectCovers(*matrix, shot.frames[1].View(), light, options.cover);
-        ++num_fitted;
-      }
-    }
-    EXPECT_GE(num_fitted, 12);
-  }
-}
-
-TEST(MergeSummaries, RefusesDifferentMetrics) {
-  const TwoFrames shot(1);
-  const Light& sun = shot.lights[0];
-  FitOptions across;
-  across.metric = Metric::kL2AcrossEdge;
-  const auto a = Summarize(shot.frames[0].View(), sun, testing::SquaredFootprints());
-  const auto b = Summarize(shot.frames[1].View(), sun, across);
-  ASSERT_THAT(a, IsOk());
-  ASSERT_THAT(b, IsOk());
-  EXPECT_THAT(MergeSummaries(*a, *b, sun),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("different metrics")));
 }
 
 }  // namespace
