@@ -7,12 +7,12 @@
 #include <limits>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include "absl/strings/str_format.h"
 #include "geometry/convex_hull.h"
 #include "geometry/inside_test.h"
 #include "geometry/ray_cone.h"
+#include "geometry/scratch.h"
 
 namespace lightfit {
 
@@ -66,7 +66,7 @@ struct CoveredSurfaces {
 };
 
 // The first covered receiver of every tile that has any, as screen points (x, y, d, 1).
-std::vector<Eigen::Vector4d> OneReceiverPerTile(const CoveredSurfaces& covered, size_t grid) {
+ScratchVector<Eigen::Vector4d> OneReceiverPerTile(const CoveredSurfaces& covered, size_t grid) {
   const Readback& readback = covered.receivers.readback;
   const uint32_t mask = covered.tiles.filter.shadow_mask;
   const auto first_receiver = [&](const DepthTile& tile) -> Eigen::Vector4d {
@@ -81,7 +81,7 @@ std::vector<Eigen::Vector4d> OneReceiverPerTile(const CoveredSurfaces& covered, 
     }
     return Eigen::Vector4d::Zero();  // not reached: the tile has a receiver
   };
-  std::vector<Eigen::Vector4d> found;
+  ScratchVector<Eigen::Vector4d> found;
   for (const DepthTile& tile : covered.tiles.grids[grid].tiles) {
     if (tile.num_surfaces > 0) found.push_back(first_receiver(tile));
   }
@@ -149,14 +149,14 @@ class HullBuilder {
 
   void UpdateHull() {
     pending_.insert(pending_.end(), hull_.begin(), hull_.end());
-    hull_ = ConvexHull(std::move(pending_));
+    hull_ = ConvexHull(pending_);
     pending_.clear();
     inside_.emplace(hull_);
   }
 
   const CoveredSurfaces& covered_;
   const Matrix34d frame_from_screen_;
-  std::vector<Eigen::Vector2d> pending_;  // receivers that may lie outside hull_
+  ScratchVector<Eigen::Vector2d> pending_;  // receivers that may lie outside hull_
   Polygon hull_;
   std::optional<InsideTest> inside_;  // of hull_
 };
@@ -175,7 +175,7 @@ TileGrid PixelGrid(const CoveredSurfaces& covered) {
 
 // An axis that has all boxes of the grid in front of it.
 std::optional<Eigen::Vector3d> AxisOfBoxes(const TileGrid& grid, const Matrix34d& ray_from_screen) {
-  std::vector<Eigen::Vector3d> rays;
+  ScratchVector<Eigen::Vector3d> rays;
   rays.reserve(8 * grid.tiles.size());
   for (const DepthTile& tile : grid.tiles) {
     if (tile.num_surfaces == 0) continue;
@@ -262,7 +262,7 @@ absl::StatusOr<RayCover> CoverReceivers(const Receivers& receivers,
     }
     if (!axis.has_value()) {
       // Look at every receiver, unless a few of them surround the light already.
-      std::vector<Eigen::Vector3d> some_rays;
+      ScratchVector<Eigen::Vector3d> some_rays;
       for (const Eigen::Vector4d& receiver : OneReceiverPerTile(covered, 0)) {
         some_rays.push_back(ray_from_screen * receiver);
       }
@@ -298,7 +298,7 @@ absl::StatusOr<RayCover> CoverReceivers(const Receivers& receivers,
 }
 
 absl::StatusOr<RayCover> MergeCovers(const RayCover& a, const RayCover& b, const Light& light) {
-  std::vector<Eigen::Vector3d> rays;
+  ScratchVector<Eigen::Vector3d> rays;
   const auto append_rays = [&rays](const RayCover& cover) {
     const Eigen::Matrix3d ray_from_normalized = cover.normalized_from_ray.inverse();
     for (const Eigen::Vector2d& vertex : cover.hull) {
@@ -328,10 +328,10 @@ absl::StatusOr<RayCover> MergeCovers(const RayCover& a, const RayCover& b, const
   } else {
     merged.depth = {std::min(a.depth.near, b.depth.near), std::max(a.depth.far, b.depth.far)};
   }
-  std::vector<Eigen::Vector2d> points;
+  ScratchVector<Eigen::Vector2d> points;
   points.reserve(rays.size());
   for (const Eigen::Vector3d& ray : rays) points.push_back((frame_from_ray * ray).hnormalized());
-  merged.hull = ConvexHull(std::move(points));
+  merged.hull = ConvexHull(points);
   const std::optional<Eigen::Matrix3d> normalized = NormalizeRays(frame_from_ray, &merged.hull);
   if (!normalized.has_value()) return FlatError(light);
   merged.normalized_from_ray = *normalized;

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/convex_hull.h"
 #include "tests/testing/random_cases.h"
 
 namespace lightfit {
@@ -220,6 +221,22 @@ TEST(ScratchVector, WorksAsBeforeOutsideOfAnyScope) {
   const ScratchScope scope(&pool);
   const ScratchVector<Wide> wide_in_pool(5);
   EXPECT_EQ(reinterpret_cast<uintptr_t>(wide_in_pool.data()) % 128, 0u);
+}
+
+// The hull of the same points is the same wherever its memory comes from, and costs nothing from
+// the second time on.
+TEST(ScratchPool, ServesTheSecondHullFromTheFirst) {
+  Random random(2);
+  std::vector<Eigen::Vector2d> points;
+  for (int i = 0; i < 500; ++i) points.push_back(random.InCube(10.0).head<2>());
+  const Polygon expected = ConvexHull(points);
+  ScratchPool pool;
+  const ScratchScope scope(&pool);
+  EXPECT_EQ(ConvexHull(points), expected);
+  const int64_t num_blocks = pool.num_blocks();
+  EXPECT_GT(num_blocks, 0);
+  for (int round = 0; round < 3; ++round) EXPECT_EQ(ConvexHull(points), expected);
+  EXPECT_EQ(pool.num_blocks(), num_blocks);
 }
 
 }  // namespace
