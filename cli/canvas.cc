@@ -83,7 +83,7 @@ void Canvas::DrawLine(const Eigen::Vector2d& from,
   }
 }
 
-void Canvas::DrawPolygon(const std::vector<Eigen::Vector2d>& corners,
+void Canvas::DrawPolygon(absl::Span<const Eigen::Vector2d> corners,
                          double width_px,
                          Rgb color,
                          float opacity) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "absl/types/span.h"
 
 namespace lightfit {
 
@@ -45,7 +46,7 @@ class Canvas {
                 double width_px,
                 Rgb color,
                 float opacity = 1);
-  void DrawPolygon(const std::vector<Eigen::Vector2d>& corners,
+  void DrawPolygon(absl::Span<const Eigen::Vector2d> corners,
                    double width_px,
                    Rgb color,
                    float opacity = 1);

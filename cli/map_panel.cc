@@ -64,7 +64,7 @@ MapView ViewMap(absl::Span<const Eigen::Vector3d> receivers_in_world,
     if (roles[i].is_sample) view.samples.push_back(texel);
     if (roles[i].is_shadowed) shadowed.push_back(texel);
   }
-  view.hull = ConvexHull(std::move(shadowed));
+  view.hull = ConvexHull(shadowed);
   view.hull_share = Area(view.hull) / (static_cast<double>(map.width) * map.height);
   return view;
 }
@@ -99,7 +99,7 @@ Canvas DrawMapPanel(const MapView& view, MapSize map, int size, const Typeface& 
     canvas.DrawDot(frame.PixelOf(sample), 1.3, kSampleColor, sample_opacity);
   }
 
-  std::vector<Eigen::Vector2d> hull;
+  Polygon hull;
   for (const Eigen::Vector2d& corner : view.hull) hull.push_back(frame.PixelOf(corner));
   canvas.DrawPolygon(hull, 1.6, kHullColor, 0.9f);
   const double width = map.width, height = map.height;

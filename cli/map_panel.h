@@ -12,6 +12,7 @@
 #include "cli/canvas.h"
 #include "cli/text.h"
 #include "geometry/clip.h"
+#include "geometry/polygon.h"
 
 namespace lightfit {
 
@@ -19,7 +20,7 @@ namespace lightfit {
 struct MapView {
   std::vector<Eigen::Vector2d> receivers;  // texels
   std::vector<Eigen::Vector2d> samples;    // texels
-  std::vector<Eigen::Vector2d> hull;       // convex hull of the shadowed receivers, texels
+  Polygon hull;                            // convex hull of the shadowed receivers, texels
   double hull_share = 0;                   // of the map's area
 };
 

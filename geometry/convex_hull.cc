@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 
 namespace lightfit {
 
@@ -10,13 +11,13 @@ namespace {
 // Above this many points it pays to throw away most of the inner ones before sorting.
 constexpr size_t kFilterFrom = 32;
 
-// Removes points strictly inside the octagon of the points furthest in eight directions (Akl &
-// Toussaint 1978). None of them can be a vertex of the hull.
-void DropInnerPoints(std::vector<Eigen::Vector2d>* points) {
+// The points without those strictly inside the octagon of the points furthest in eight directions
+// (Akl & Toussaint 1978). None of them can be a vertex of the hull.
+ScratchVector<Eigen::Vector2d> WithoutInnerPoints(absl::Span<const Eigen::Vector2d> points) {
   // Furthest towards -y, +x-y, +x, +x+y, +y, -x+y, -x, -x-y: counter-clockwise.
   std::array<Eigen::Vector2d, 8> corner;
-  corner.fill(points->front());
-  for (const Eigen::Vector2d& point : *points) {
+  corner.fill(points.front());
+  for (const Eigen::Vector2d& point : points) {
     const double x = point.x(), y = point.y();
     if (y < corner[0].y()) corner[0] = point;
     if (x - y > corner[1].x() - corner[1].y()) corner[1] = point;
@@ -41,18 +42,22 @@ void DropInnerPoints(std::vector<Eigen::Vector2d>* points) {
     for (int i = 0; i < num_sides; ++i) left_of_all &= Cross(side[i], point - corner[i]) > 0.0;
     return left_of_all;
   };
-  points->erase(std::remove_if(points->begin(), points->end(), inside), points->end());
+  ScratchVector<Eigen::Vector2d> outer;
+  std::remove_copy_if(points.begin(), points.end(), std::back_inserter(outer), inside);
+  return outer;
 }
 
 }  // namespace
 
-Polygon ConvexHull(std::vector<Eigen::Vector2d> points) {
-  if (points.size() > kFilterFrom) DropInnerPoints(&points);
-  std::sort(points.begin(), points.end(), [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+Polygon ConvexHull(absl::Span<const Eigen::Vector2d> points) {
+  using Points = ScratchVector<Eigen::Vector2d>;
+  Points sorted = points.size() > kFilterFrom ? WithoutInnerPoints(points)
+                                              : Points(points.begin(), points.end());
+  std::sort(sorted.begin(), sorted.end(), [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
     return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
   });
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-  if (points.size() < 3) return points;
+  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+  if (sorted.size() < 3) return sorted;
 
   // Lower chain from left to right, then upper chain back.
   Polygon hull;
@@ -64,9 +69,9 @@ Polygon ConvexHull(std::vector<Eigen::Vector2d> points) {
     }
     hull.push_back(point);
   };
-  for (const Eigen::Vector2d& point : points) add(point, 0);
+  for (const Eigen::Vector2d& point : sorted) add(point, 0);
   const size_t lower = hull.size() - 1;
-  for (auto point = points.rbegin() + 1; point != points.rend(); ++point) add(*point, lower);
+  for (auto point = sorted.rbegin() + 1; point != sorted.rend(); ++point) add(*point, lower);
   hull.pop_back();  // the first point again
   return hull;
 }

@@ -5,13 +5,16 @@
 // Out:  a counter-clockwise Polygon of input points; collinear points are left out.
 #pragma once
 
+#include <Eigen/Core>
+
+#include "absl/types/span.h"
 #include "geometry/polygon.h"
 
 namespace lightfit {
 
-// Andrew's monotone chain, O(n log n). `points` is reordered. No points give no vertices, one or
+// Andrew's monotone chain, O(n log n). No points give no vertices, one or
 // collinear points give one or two.
-Polygon ConvexHull(std::vector<Eigen::Vector2d> points);
+Polygon ConvexHull(absl::Span<const Eigen::Vector2d> points);
 
 // Twice the area would be a cross product away; this is the area itself, positive for a
 // counter-clockwise polygon.

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <utility>
-#include <vector>
 
 namespace lightfit {
 
@@ -42,7 +41,7 @@ struct Row {
 };
 
 // Half the boundary of the polar of K - K; the other half is its mirror image.
-std::vector<Breakpoint> PolarOfDifference(const std::vector<Eigen::Vector2d>& points) {
+ScratchVector<Breakpoint> PolarOfDifference(const Polygon& points) {
   const int n = static_cast<int>(points.size());
   const auto next = [n](int i) { return i + 1 == n ? 0 : i + 1; };
   const auto edge = [&](int i) -> Eigen::Vector2d { return points[next(i)] - points[i]; };
@@ -55,7 +54,7 @@ std::vector<Breakpoint> PolarOfDifference(const std::vector<Eigen::Vector2d>& po
   int low = 0, high = 2;
   while (distance(high) < furthest * (1.0 - kParallelTolerance)) ++high;
 
-  std::vector<Breakpoint> polar;
+  ScratchVector<Breakpoint> polar;
   polar.reserve(n);
   const auto parallel = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
     return std::abs(Cross(a, b)) <= kParallelTolerance * a.norm() * b.norm();
@@ -89,7 +88,7 @@ struct StripPair {
 
 class StripSearch {
  public:
-  explicit StripSearch(std::vector<Breakpoint> polar)
+  explicit StripSearch(ScratchVector<Breakpoint> polar)
       : polar_(std::move(polar)), size_(static_cast<int>(polar_.size())) {}
 
   int size() const { return size_; }
@@ -164,8 +163,8 @@ class StripSearch {
   }
 
   // Rows in order along half the boundary: every breakpoint, and rows between.
-  std::vector<Row> Starts() const {
-    std::vector<Row> starts;
+  ScratchVector<Row> Starts() const {
+    ScratchVector<Row> starts;
     starts.reserve(size_ + static_cast<int>(M_PI / kMaxStartAngle));
     for (int i = 0; i < size_; ++i) {
       starts.push_back(AtBreakpoint(i));
@@ -188,7 +187,7 @@ class StripSearch {
   // envelope theorem the slope over the fixed row is that with the searched row held; its zero is
   // found by the Illinois method (regula falsi that halves the weight of a stale end).
   StripPair Pursue(
-      const std::vector<Row>& starts, int i, int hint, double first, double second) const {
+      const ScratchVector<Row>& starts, int i, int hint, double first, double second) const {
     StripPair best = At(starts[i], hint, first, second);
     const int n = static_cast<int>(starts.size());
     // Between neighbouring starts rows lie on a straight polar edge. Across the seam of the half
@@ -309,7 +308,7 @@ class StripSearch {
     }
   }
 
-  std::vector<Breakpoint> polar_;
+  ScratchVector<Breakpoint> polar_;
   int size_;
 };
 
@@ -336,16 +335,16 @@ EnclosingParallelogram MinEnergyParallelogram(const Polygon& polygon,
   whiten << metric_00, metric(0, 1) / metric_00, 0.0,
       std::sqrt(std::max(metric(1, 1) - metric(0, 1) * metric(0, 1) / metric(0, 0),
                          std::numeric_limits<double>::min()));
-  std::vector<Eigen::Vector2d> points(polygon.size());
+  Polygon points(polygon.size());
   for (size_t i = 0; i < polygon.size(); ++i) points[i] = whiten * polygon[i];
   const StripSearch search(PolarOfDifference(points));
 
   const double iw2 = 1.0 / (width * width);
   const double ih2 = 1.0 / (height * height);
-  const std::vector<Row> starts = search.Starts();
+  const ScratchVector<Row> starts = search.Starts();
   const int num_starts = static_cast<int>(starts.size());
-  std::vector<double> energies(starts.size());
-  std::vector<int> hints(starts.size());
+  ScratchVector<double> energies(starts.size());
+  ScratchVector<int> hints(starts.size());
   StripPair best;
   // `fixed_is_v`: the start fixes the strip of edge_v and searches that of edge_u, or the reverse.
   for (const bool fixed_is_v : {true, false}) {

@@ -4,13 +4,14 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
+
+#include "geometry/scratch.h"
 
 namespace lightfit {
 
 // Vertices of a convex polygon, counter-clockwise (x right, y up), none repeated. Fewer than three
 // vertices mean a point or a segment.
-using Polygon = std::vector<Eigen::Vector2d>;
+using Polygon = ScratchVector<Eigen::Vector2d>;
 
 // The points corner + s edge_u + t edge_v, 0 <= s, t <= 1.
 struct Parallelogram {

@@ -3,10 +3,10 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <limits>
-#include <vector>
 
 #include "geometry/convex_hull.h"
 #include "geometry/enclosing_rectangle.h"
+#include "geometry/scratch.h"
 
 namespace lightfit {
 
@@ -21,15 +21,23 @@ double Margin(absl::Span<const Eigen::Vector3d> unit_rays, const Eigen::Vector3d
   return margin;
 }
 
-// The point nearest to the origin in the affine hull of the columns, as weights that sum to 1.
-Eigen::VectorXd AffineMinimizer(const std::vector<Eigen::Vector3d>& corral) {
+// The rays whose hull has the nearest point. Four do; one more is under way, and rounding may leave
+// some that depend on each other.
+constexpr int kMaxCorral = 7;
+// Of the size of the corral, without heap memory.
+using Weights = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxCorral + 1, 1>;
+
+// The point nearest to the origin in the affine hull of the rays, as weights that sum to 1.
+Weights AffineMinimizer(absl::Span<const Eigen::Vector3d> corral) {
+  using System =
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxCorral + 1, kMaxCorral + 1>;
   const Eigen::Index n = static_cast<Eigen::Index>(corral.size());
-  Eigen::MatrixXd system = Eigen::MatrixXd::Ones(n + 1, n + 1);
+  System system = System::Ones(n + 1, n + 1);
   system(n, n) = 0.0;
   for (Eigen::Index i = 0; i < n; ++i) {
     for (Eigen::Index j = 0; j < n; ++j) system(i, j) = corral[i].dot(corral[j]);
   }
-  const Eigen::VectorXd weights = system.fullPivLu().solve(Eigen::VectorXd::Unit(n + 1, n));
+  const Weights weights = system.fullPivLu().solve(Weights(Weights::Unit(n + 1, n)));
   return weights.head(n);
 }
 
@@ -38,8 +46,8 @@ Eigen::VectorXd AffineMinimizer(const std::vector<Eigen::Vector3d>& corral) {
 Eigen::Vector3d NearestPointOfHull(absl::Span<const Eigen::Vector3d> unit_rays) {
   constexpr int kMaxRounds = 200;
   constexpr double kTolerance = 1e-12;
-  std::vector<Eigen::Vector3d> corral = {unit_rays[0]};
-  Eigen::VectorXd weights = Eigen::VectorXd::Ones(1);
+  ScratchVector<Eigen::Vector3d> corral = {unit_rays[0]};
+  Weights weights = Weights::Ones(1);
   Eigen::Vector3d nearest = unit_rays[0];
   for (int round = 0; round < kMaxRounds; ++round) {
     const Eigen::Vector3d* lowest = &unit_rays[0];
@@ -51,13 +59,13 @@ Eigen::Vector3d NearestPointOfHull(absl::Span<const Eigen::Vector3d> unit_rays) 
         lowest = &ray;
       }
     }
-    if (lowest_height >= nearest.squaredNorm() - kTolerance) break;
+    if (lowest_height >= nearest.squaredNorm() - kTolerance || corral.size() == kMaxCorral) break;
     corral.push_back(*lowest);
     weights.conservativeResize(weights.size() + 1);
     weights(weights.size() - 1) = 0.0;
     // Step towards the affine minimiser; drop the rays whose weight reaches zero on the way.
     while (true) {
-      const Eigen::VectorXd target = AffineMinimizer(corral);
+      const Weights target = AffineMinimizer(corral);
       if (!target.allFinite()) return Eigen::Vector3d::Zero();
       if (target.minCoeff() > kTolerance || corral.size() == 1) {
         weights = target;
@@ -87,7 +95,7 @@ Eigen::Vector3d NearestPointOfHull(absl::Span<const Eigen::Vector3d> unit_rays) 
 
 std::optional<Eigen::Vector3d> FeasibleAxis(absl::Span<const Eigen::Vector3d> rays) {
   if (rays.empty()) return std::nullopt;
-  std::vector<Eigen::Vector3d> unit_rays;
+  ScratchVector<Eigen::Vector3d> unit_rays;
   unit_rays.reserve(rays.size());
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& ray : rays) {

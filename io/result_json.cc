@@ -83,7 +83,7 @@ v1::LightResult LightResultToProto(const LightFit& fit, const FitReport& report)
   proto.set_evaluations(matrix.evaluations);
   for (const TraceStep& step : matrix.trace) {
     v1::TraceStep& step_proto = *proto.add_trace();
-    step_proto.set_station(step.station);
+    step_proto.set_station(std::string(step.station));
     step_proto.set_evaluations(step.evaluations);
     step_proto.set_energy(step.energy);
   }

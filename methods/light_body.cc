@@ -66,7 +66,7 @@ Polygon HullOfBody(const LightBody& body, const Eigen::Matrix3d& warped_from_ray
   for (const Eigen::Vector3d& ray : body.rays) {
     points.push_back((warped_from_ray * ray).hnormalized());
   }
-  return ConvexHull(std::move(points));
+  return ConvexHull(points);
 }
 
 bool HasArea(const Polygon& hull) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "geometry/convex_hull.h"
+#include "geometry/scratch.h"
 
 namespace lightfit {
 
@@ -30,20 +31,20 @@ Eigen::Vector3d SummaryEvaluator::Gradient(const AffineFit& fit) {
 }
 
 SampleEvaluator::SampleEvaluator(const Samples& samples,
-                                 std::vector<Eigen::Vector3d> receiver_rays,
+                                 absl::Span<const Eigen::Vector3d> receiver_rays,
                                  const MetricWeights& metric,
                                  const AffineProblem& problem,
                                  double min_w)
     : AxisEvaluator(problem, min_w),
       samples_(samples),
-      receiver_rays_(std::move(receiver_rays)),
+      receiver_rays_(receiver_rays),
       metric_(metric) {}
 
 std::optional<AffineFit> SampleEvaluator::EvaluateScaled(const Eigen::Vector3d& axis) {
   // Project every receiver and take the hull, in the plane X_3 = 1 seen along `axis`.
   Eigen::Matrix3d plane_from_ray = Eigen::Matrix3d::Identity();
   plane_from_ray.row(2) = axis;
-  std::vector<Eigen::Vector2d> points;
+  ScratchVector<Eigen::Vector2d> points;
   points.reserve(receiver_rays_.size());
   for (const Eigen::Vector3d& ray : receiver_rays_) {
     const double w = axis.dot(ray);
@@ -52,7 +53,7 @@ std::optional<AffineFit> SampleEvaluator::EvaluateScaled(const Eigen::Vector3d& 
   }
   // Back to normalised rays, which is where FitAffine takes its hull. Order and convexity hold.
   const Eigen::Matrix3d ray_from_plane = plane_from_ray.inverse();
-  Polygon hull = ConvexHull(std::move(points));
+  Polygon hull = ConvexHull(points);
   for (Eigen::Vector2d& vertex : hull) {
     vertex = (ray_from_plane * vertex.homogeneous()).hnormalized();
   }

@@ -7,8 +7,8 @@
 
 #include <Eigen/Core>
 #include <optional>
-#include <vector>
 
+#include "absl/types/span.h"
 #include "optimizer/affine.h"
 #include "optimizer/summary.h"
 
@@ -61,9 +61,10 @@ class SummaryEvaluator final : public AxisEvaluator {
 // all samples. FitOptions::sample_by_sample; the yardstick for the summary's speed and correctness.
 class SampleEvaluator final : public AxisEvaluator {
  public:
-  // `receiver_rays` are those of all receivers in the samples' coordinates.
+  // `receiver_rays` are those of all receivers in the samples' coordinates. They and the samples
+  // must outlive the object.
   SampleEvaluator(const Samples& samples,
-                  std::vector<Eigen::Vector3d> receiver_rays,
+                  absl::Span<const Eigen::Vector3d> receiver_rays,
                   const MetricWeights& metric,
                   const AffineProblem& problem,
                   double min_w);
@@ -74,7 +75,7 @@ class SampleEvaluator final : public AxisEvaluator {
   std::optional<AffineFit> EvaluateScaled(const Eigen::Vector3d& axis) override;
 
   const Samples& samples_;
-  std::vector<Eigen::Vector3d> receiver_rays_;
+  absl::Span<const Eigen::Vector3d> receiver_rays_;
   MetricWeights metric_;
 };
 

@@ -3,12 +3,11 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include "absl/strings/str_format.h"
+#include "geometry/scratch.h"
 #include "optimizer/axis_evaluator.h"
 #include "optimizer/global_search.h"
 #include "optimizer/l1_weights.h"
@@ -20,9 +19,9 @@ namespace lightfit {
 namespace {
 
 // Rays of all receivers in normalised coordinates, for SampleEvaluator.
-std::vector<Eigen::Vector3d> ReceiverRays(const Receivers& receivers,
-                                          const Eigen::Matrix<double, 3, 4>& ray_from_screen) {
-  std::vector<Eigen::Vector3d> rays;
+ScratchVector<Eigen::Vector3d> ReceiverRays(const Receivers& receivers,
+                                            const Eigen::Matrix<double, 3, 4>& ray_from_screen) {
+  ScratchVector<Eigen::Vector3d> rays;
   for (const DepthTile& tile : receivers.tiles.grids[0].tiles) {
     if (tile.num_surfaces == 0) continue;
     ForEachSurface(receivers.readback,
@@ -50,16 +49,16 @@ absl::StatusOr<SearchOutcome> SearchSquares(const SearchInputs& inputs,
                                             MapSize map,
                                             const FitOptions& options) {
   const AffineProblem problem = MakeAffineProblem(summary, map, options);
-  std::unique_ptr<AxisEvaluator> evaluator;
+  ScratchVector<Eigen::Vector3d> receiver_rays;
+  std::optional<SampleEvaluator> by_samples;
+  std::optional<SummaryEvaluator> by_summary;
+  AxisEvaluator* evaluator = nullptr;
   if (options.sample_by_sample && inputs.samples != nullptr && inputs.receivers != nullptr) {
-    evaluator = std::make_unique<SampleEvaluator>(
-        *inputs.samples,
-        ReceiverRays(*inputs.receivers, inputs.samples->ray_from_screen),
-        summary.metric,
-        problem,
-        options.min_w);
+    receiver_rays = ReceiverRays(*inputs.receivers, inputs.samples->ray_from_screen);
+    evaluator =
+        &by_samples.emplace(*inputs.samples, receiver_rays, summary.metric, problem, options.min_w);
   } else {
-    evaluator = std::make_unique<SummaryEvaluator>(summary, problem, options.min_w);
+    evaluator = &by_summary.emplace(summary, problem, options.min_w);
   }
   const std::optional<AffineFit> start = StartFit(summary, *evaluator);
   if (!start.has_value()) {
@@ -156,7 +155,7 @@ absl::StatusOr<SearchOutcome> SearchL1(const SearchInputs& inputs,
                                        const FitOptions& options) {
   absl::StatusOr<SearchOutcome> best = StartOfL1(inputs, map, options);
   if (!best.ok()) return best.status();
-  std::vector<TraceStep> trace = best->result.trace;
+  ScratchVector<TraceStep> trace = best->result.trace;
   const double energy_start = best->energy_start;
   int evaluations = best->evaluations;
   Samples reweighted = *inputs.samples;

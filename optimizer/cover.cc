@@ -7,12 +7,12 @@
 #include <limits>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include "absl/strings/str_format.h"
 #include "geometry/convex_hull.h"
 #include "geometry/inside_test.h"
 #include "geometry/ray_cone.h"
+#include "geometry/scratch.h"
 
 namespace lightfit {
 
@@ -53,7 +53,7 @@ struct CoveredSurfaces {
 };
 
 // The first covered receiver of every tile that has any, as screen points (x, y, d, 1).
-std::vector<Eigen::Vector4d> OneReceiverPerTile(const CoveredSurfaces& covered, size_t grid) {
+ScratchVector<Eigen::Vector4d> OneReceiverPerTile(const CoveredSurfaces& covered, size_t grid) {
   const Readback& readback = covered.receivers.readback;
   const uint32_t mask = covered.tiles.filter.shadow_mask;
   const auto first_receiver = [&](const DepthTile& tile) -> Eigen::Vector4d {
@@ -68,7 +68,7 @@ std::vector<Eigen::Vector4d> OneReceiverPerTile(const CoveredSurfaces& covered, 
     }
     return Eigen::Vector4d::Zero();  // not reached: the tile has a receiver
   };
-  std::vector<Eigen::Vector4d> found;
+  ScratchVector<Eigen::Vector4d> found;
   for (const DepthTile& tile : covered.tiles.grids[grid].tiles) {
     if (tile.num_surfaces > 0) found.push_back(first_receiver(tile));
   }
@@ -136,14 +136,14 @@ class HullBuilder {
 
   void UpdateHull() {
     pending_.insert(pending_.end(), hull_.begin(), hull_.end());
-    hull_ = ConvexHull(std::move(pending_));
+    hull_ = ConvexHull(pending_);
     pending_.clear();
     inside_.emplace(hull_);
   }
 
   const CoveredSurfaces& covered_;
   const Matrix34d frame_from_screen_;
-  std::vector<Eigen::Vector2d> pending_;  // receivers that may lie outside hull_
+  ScratchVector<Eigen::Vector2d> pending_;  // receivers that may lie outside hull_
   Polygon hull_;
   std::optional<InsideTest> inside_;  // of hull_
 };
@@ -162,7 +162,7 @@ TileGrid PixelGrid(const CoveredSurfaces& covered) {
 
 // An axis that has all boxes of the grid in front of it.
 std::optional<Eigen::Vector3d> AxisOfBoxes(const TileGrid& grid, const Matrix34d& ray_from_screen) {
-  std::vector<Eigen::Vector3d> rays;
+  ScratchVector<Eigen::Vector3d> rays;
   rays.reserve(8 * grid.tiles.size());
   for (const DepthTile& tile : grid.tiles) {
     if (tile.num_surfaces == 0) continue;
@@ -263,7 +263,7 @@ absl::StatusOr<RayCover> CoverReceivers(const Receivers& receivers,
     }
     if (!axis.has_value()) {
       // Look at every receiver, unless a few of them surround the light already.
-      std::vector<Eigen::Vector3d> some_rays;
+      ScratchVector<Eigen::Vector3d> some_rays;
       for (const Eigen::Vector4d& receiver : OneReceiverPerTile(covered, 0)) {
         some_rays.push_back(ray_from_screen * receiver);
       }
@@ -316,10 +316,10 @@ absl::StatusOr<RayCover> CoverRays(absl::Span<const Eigen::Vector3d> rays,
     cover.depth.near = depth.near * min_cos;
     cover.mean_ray = mean_ray.squaredNorm() > 0.0 ? mean_ray.normalized() : *axis;
   }
-  std::vector<Eigen::Vector2d> points;
+  ScratchVector<Eigen::Vector2d> points;
   points.reserve(rays.size());
   for (const Eigen::Vector3d& ray : rays) points.push_back((frame_from_ray * ray).hnormalized());
-  cover.hull = ConvexHull(std::move(points));
+  cover.hull = ConvexHull(points);
   const std::optional<Eigen::Matrix3d> normalized = NormalizeRays(frame_from_ray, &cover.hull);
   if (!normalized.has_value()) return FlatError(light);
   cover.normalized_from_ray = *normalized;

@@ -9,8 +9,8 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
+#include "geometry/scratch.h"
 #include "optimizer/readback.h"
 
 namespace lightfit {
@@ -27,7 +27,7 @@ struct DepthTile {
 struct TileGrid {
   int columns = 0;
   int rows = 0;
-  std::vector<DepthTile> tiles;
+  ScratchVector<DepthTile> tiles;
 };
 
 // Which surfaces of a read-back are meant.
@@ -38,7 +38,7 @@ struct SurfaceFilter {
 struct DepthTiles {
   SurfaceFilter filter;
   // Finest first; a tile of each further grid is made of kTilesPerSide^2 tiles of the one before.
-  std::vector<TileGrid> grids;
+  ScratchVector<TileGrid> grids;
   int64_t num_surfaces = 0;
   int64_t num_background = 0;  // of all pixels, whatever the filter
 

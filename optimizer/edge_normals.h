@@ -6,8 +6,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
 
+#include "geometry/scratch.h"
 #include "optimizer/readback.h"
 
 namespace lightfit {
@@ -26,7 +26,7 @@ class EdgeNormals {
   const AffineDepth& affine_depth_;
   int bit_;
   int window_;
-  std::vector<double> weights_;  // of a window's pixels, in row order
+  ScratchVector<double> weights_;  // of a window's pixels, in row order
 };
 
 }  // namespace lightfit

@@ -11,15 +11,15 @@
 
 namespace lightfit {
 
-std::vector<absl::StatusOr<LightMatrix>> FitLights(const Readback& readback,
-                                                   absl::Span<const Light> lights,
-                                                   MapSize map,
-                                                   const FitOptions& options) {
-  std::vector<absl::StatusOr<LightMatrix>> results(lights.size());
+LightMatrices FitLights(const Readback& readback,
+                        absl::Span<const Light> lights,
+                        MapSize map,
+                        const FitOptions& options) {
+  LightMatrices results(lights.size());
   absl::Status status = ValidateFitOptions(options);
   if (status.ok()) status = ValidateMapSize(map, options.margin_texels);
   uint32_t light_mask = 0;
-  std::vector<absl::Status> light_status;
+  ScratchVector<absl::Status> light_status;
   for (const Light& light : lights) {
     light_status.push_back(ValidateLight(light));
     if (light_status.back().ok()) light_mask |= uint32_t{1} << light.shadow_bit;
@@ -48,7 +48,7 @@ absl::StatusOr<LightMatrix> FitLight(const Readback& readback,
                                      const Light& light,
                                      MapSize map,
                                      const FitOptions& options) {
-  return std::move(FitLights(readback, {light}, map, options).front());
+  return std::move(FitLights(readback, absl::MakeConstSpan(&light, 1), map, options).front());
 }
 
 namespace {

@@ -9,14 +9,16 @@
 //          FailedPrecondition: the input is fine but no single map exists, or there is nothing to
 //          fit; the message names the light and what to do.
 // Threads: functions share nothing; call them from as many threads as you like.
+// Memory:  inside a ScratchScope all of it, results included, comes from there, and a pool that has
+//          seen the like before allocates nothing. geometry/scratch.h
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
 
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
 #include "geometry/light.h"
+#include "geometry/scratch.h"
 #include "optimizer/fit_options.h"
 #include "optimizer/light_matrix.h"
 #include "optimizer/readback.h"
@@ -30,13 +32,15 @@ absl::StatusOr<LightMatrix> FitLight(const Readback& readback,
                                      MapSize map,
                                      const FitOptions& options = {});
 
+using LightMatrices = ScratchVector<absl::StatusOr<LightMatrix>>;
+
 // The matrices for up to 32 lights of one read-back. What does not depend on the light is computed
 // once. Element i belongs to lights[i] and has its own status; an error that concerns the whole
 // read-back is returned for every light.
-std::vector<absl::StatusOr<LightMatrix>> FitLights(const Readback& readback,
-                                                   absl::Span<const Light> lights,
-                                                   MapSize map,
-                                                   const FitOptions& options = {});
+LightMatrices FitLights(const Readback& readback,
+                        absl::Span<const Light> lights,
+                        MapSize map,
+                        const FitOptions& options = {});
 
 // The two halves of FitLight: everything the read-back has to say about this light, in about a
 // kilobyte, and the fit from that alone. Summaries of one light add (optimizer/summary_total.h).

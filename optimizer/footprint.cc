@@ -3,7 +3,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 namespace lightfit {
 
@@ -67,7 +66,7 @@ FootprintStatistics ComputeFootprintStatistics(const Eigen::Matrix3d& map_from_r
   if (samples.size() == 0) return statistics;
   const Eigen::Vector3d p = map_from_ray.row(2);
   const Eigen::Matrix<double, 3, 2> R12 = map_from_ray.inverse().leftCols<2>();
-  std::vector<double> footprints(samples.size());
+  ScratchVector<double> footprints(samples.size());
   double sum_squared = 0.0, sum_weight = 0.0;
   for (size_t i = 0; i < samples.size(); ++i) {
     const Sample sample = samples.At(i);

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <vector>
 
+#include "geometry/scratch.h"
 #include "optimizer/pixel_footprint.h"
 
 namespace lightfit {
@@ -91,7 +91,7 @@ class ShadowOfSurface {
   const PixelFootprints& footprints_;
   const AffineDepth& affine_depth_;
   int bit_;
-  std::vector<Facing> facing_;
+  ScratchVector<Facing> facing_;
 };
 
 }  // namespace

@@ -3,10 +3,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <utility>
-#include <vector>
 
+#include "geometry/scratch.h"
 #include "optimizer/polish.h"
 #include "optimizer/refine.h"
 
@@ -33,14 +34,18 @@ double DistanceToEdge(const Polygon& hull, double min_w, const Eigen::Vector2d& 
 }
 
 // The best candidates, best first, no two close together.
-std::vector<AffineFit> SelectCandidates(std::vector<AffineFit> candidates) {
-  std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
-    return a.energy < b.energy;
+ScratchVector<AffineFit> SelectCandidates(const ScratchVector<AffineFit>& candidates) {
+  // Of equals the first; std::stable_sort would allocate.
+  ScratchVector<int> order(candidates.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int a, int b) {
+    return std::pair(candidates[a].energy, a) < std::pair(candidates[b].energy, b);
   });
-  std::vector<AffineFit> selected;
-  for (const AffineFit& candidate : candidates) {
+  ScratchVector<AffineFit> selected;
+  for (const int index : order) {
+    const AffineFit& candidate = candidates[index];
     if (selected.size() == kNumRefined ||
-        candidate.energy > kRefinedFactor * candidates[0].energy) {
+        candidate.energy > kRefinedFactor * candidates[order[0]].energy) {
       break;
     }
     const bool is_apart =
@@ -63,7 +68,7 @@ SearchResult GlobalSearch(const Summary& summary,
   SearchResult result;
   result.trace.push_back({"start", evaluator.num_evaluations(), start.energy});
 
-  std::vector<AffineFit> candidates = {start};
+  ScratchVector<AffineFit> candidates = {start};
   const auto consider = [&](const Eigen::Vector2d& ab) {
     const std::optional<AffineFit> fit = evaluator.Evaluate(ab.homogeneous());
     if (fit.has_value()) candidates.push_back(*fit);
@@ -75,12 +80,12 @@ SearchResult GlobalSearch(const Summary& summary,
     const double edge = DistanceToEdge(summary.cover.hull, evaluator.min_w(), direction);
     for (const double share : kSpokeShares) consider(share * edge * direction);
   }
-  candidates = SelectCandidates(std::move(candidates));
+  candidates = SelectCandidates(candidates);
   result.fit = candidates.front();
   result.trace.push_back({"grid", evaluator.num_evaluations(), result.fit.energy});
 
   int evaluations = evaluator.num_evaluations();
-  std::vector<AffineFit> refined_fits;
+  ScratchVector<AffineFit> refined_fits;
   for (const AffineFit& candidate : candidates) {
     RefineResult refined =
         RefineAxis(summary, evaluator.problem(), evaluator.min_w(), refiner, candidate);

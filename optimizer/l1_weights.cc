@@ -12,11 +12,11 @@ namespace {
 constexpr double kReweightingFloor = 0.02;
 
 // Footprints of all samples in the metric: the terms of the L1 energy.
-std::vector<double> MetricFootprints(const Samples& samples,
-                                     const MetricWeights& metric,
-                                     const Eigen::Matrix3d& map_from_ray) {
+ScratchVector<double> MetricFootprints(const Samples& samples,
+                                       const MetricWeights& metric,
+                                       const Eigen::Matrix3d& map_from_ray) {
   const Eigen::Matrix<double, 3, 2> r = map_from_ray.inverse().leftCols<2>();
-  std::vector<double> footprints(samples.size());
+  ScratchVector<double> footprints(samples.size());
   for (size_t i = 0; i < samples.size(); ++i) {
     const Sample sample = samples.At(i);
     const double w = map_from_ray.row(2).dot(sample.X);
@@ -31,8 +31,9 @@ std::vector<double> MetricFootprints(const Samples& samples,
 L1Weights WeightsForL1(const Samples& samples,
                        const MetricWeights& metric,
                        const Eigen::Matrix3d& map_from_ray) {
-  const std::vector<double> footprints = MetricFootprints(samples, metric, map_from_ray);
+  const ScratchVector<double> footprints = MetricFootprints(samples, metric, map_from_ray);
   L1Weights result;
+  result.weights.reserve(samples.size());
   double total_weight = 0.0;
   for (size_t i = 0; i < footprints.size(); ++i) {
     result.footprint_sum += samples.weight[i] * footprints[i];

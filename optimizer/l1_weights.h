@@ -6,8 +6,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
 
+#include "geometry/scratch.h"
 #include "optimizer/footprint.h"
 #include "optimizer/samples.h"
 
@@ -18,7 +18,7 @@ namespace lightfit {
 // the weighted sum of the footprints, the third that of what the weights take them to be.
 // math.md 4
 struct L1Weights {
-  std::vector<double> weights;
+  ScratchVector<double> weights;
   double footprint_sum = 0.0;
   double floored_sum = 0.0;
 };

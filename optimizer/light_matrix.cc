@@ -1,6 +1,7 @@
 #include "optimizer/light_matrix.h"
 
 #include "absl/strings/str_format.h"
+#include "absl/strings/string_view.h"
 
 namespace lightfit {
 
@@ -20,7 +21,7 @@ const char* StopReasonName(StopReason reason) {
 
 std::string LightMatrix::BriefReport() const {
   return absl::StrFormat("%s: %dx%d, energy %.6g (start %.6g), rms %.4g px, worst %.4g px, %s",
-                         light_name,
+                         absl::string_view(light_name),
                          map.width,
                          map.height,
                          energy,

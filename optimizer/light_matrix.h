@@ -6,9 +6,10 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <string>
-#include <vector>
+#include <string_view>
 
 #include "geometry/clip.h"
+#include "geometry/scratch.h"
 
 namespace lightfit {
 
@@ -44,13 +45,14 @@ const char* StopReasonName(StopReason reason);
 
 // One accepted step of the search.
 struct TraceStep {
-  std::string station;  // "start", "line_search", "grid", "refine", "polish", "exact"
+  // A literal: "start", "line_search", "grid", "refine", "polish", "exact".
+  std::string_view station;
   int evaluations = 0;  // matrices evaluated so far
   double energy = 0;
 };
 
 struct LightMatrix {
-  std::string light_name;
+  ScratchString light_name;
   MapSize map;
 
   // Homogeneous (u w, v w, z w, w) of a world point: u, v in texels, (0, 0) the first texel's
@@ -67,7 +69,7 @@ struct LightMatrix {
   SampleCounts samples;
   StopReason stop_reason = StopReason::kConverged;
   int evaluations = 0;
-  std::vector<TraceStep> trace;
+  ScratchVector<TraceStep> trace;
   std::string solver_report;  // Ceres' own words, Refiner::kCeres only
 
   // "sun: 1024x1024, energy 12.3 (start 20.1), rms 0.12 px, worst 0.8 px, converged"

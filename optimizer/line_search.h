@@ -6,8 +6,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
 
+#include "geometry/scratch.h"
 #include "optimizer/axis_evaluator.h"
 #include "optimizer/light_matrix.h"
 
@@ -18,7 +18,7 @@ inline constexpr double kLineSearchAnglesDeg[] = {-10, 3, 5, 9, 16, 23, 30, 40, 
 
 struct SearchResult {
   AffineFit fit;
-  std::vector<TraceStep> trace;
+  ScratchVector<TraceStep> trace;
   StopReason stop_reason = StopReason::kConverged;
 };
 

@@ -119,7 +119,7 @@ absl::StatusOr<Receivers> FindReceivers(const Readback& readback,
   const Eigen::Vector3d eye =
       receivers.world_from_screen.block<3, 1>(0, 2) /
       (readback.camera.orthographic ? 1.0 : receivers.world_from_screen(3, 2));
-  std::vector<int32_t> columns(width);
+  ScratchVector<int32_t> columns(width);
   for (int y = 1; y + 1 < height; ++y) {
     const uint32_t* row = readback.shadow_bits.data() + static_cast<size_t>(y) * width;
     const size_t num_columns =

@@ -9,10 +9,10 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
-#include <vector>
 
 #include "absl/status/statusor.h"
 #include "geometry/light.h"
+#include "geometry/scratch.h"
 #include "optimizer/depth_tiles.h"
 #include "optimizer/fit_options.h"
 #include "optimizer/light_matrix.h"
@@ -42,8 +42,8 @@ struct Receivers {
   SampleOptions options;
   AffineDepth affine_depth;  // of the read-back's camera and depth kind
   Eigen::Matrix4d world_from_screen;
-  DepthTiles tiles;                     // of all receivers
-  std::vector<BoundaryPixel> boundary;  // in pixel order
+  DepthTiles tiles;                       // of all receivers
+  ScratchVector<BoundaryPixel> boundary;  // in pixel order
   std::array<SampleCounts, kMaxLights>
       counts;  // by shadow bit; used, facing_away, edge_on are 0 yet
 };

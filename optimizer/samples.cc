@@ -44,7 +44,7 @@ Facing FacingOf(const BoundaryPixel& pixel, const Light& light, double min_cos_l
 // from the light, whose bit is 0 because no shadow is looked up there.
 class Terminators {
  public:
-  Terminators(const Receivers& receivers, uint32_t bit, const std::vector<Facing>& facing)
+  Terminators(const Receivers& receivers, uint32_t bit, const ScratchVector<Facing>& facing)
       : receivers_(receivers), bit_(bit), facing_(facing) {
     row_begin_.reserve(receivers.readback.height() + 1);
     for (size_t i = 0; i < receivers.boundary.size(); ++i) {
@@ -83,8 +83,8 @@ class Terminators {
 
   const Receivers& receivers_;
   uint32_t bit_;
-  const std::vector<Facing>& facing_;  // by boundary pixel
-  std::vector<size_t> row_begin_;      // in Receivers::boundary
+  const ScratchVector<Facing>& facing_;  // by boundary pixel
+  ScratchVector<size_t> row_begin_;      // in Receivers::boundary
 };
 
 }  // namespace
@@ -102,7 +102,7 @@ Samples SelectSamples(const Receivers& receivers,
   }
   const EdgeNormals edge_normals(
       receivers.readback, receivers.affine_depth, light.shadow_bit, receivers.options.edge_window);
-  std::vector<Facing> facing;
+  ScratchVector<Facing> facing;
   facing.reserve(receivers.boundary.size());
   for (const BoundaryPixel& pixel : receivers.boundary) {
     const bool is_candidate = (pixel.lights & bit) != 0;

@@ -7,9 +7,9 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <vector>
 
 #include "geometry/light.h"
+#include "geometry/scratch.h"
 #include "optimizer/receivers.h"
 
 namespace lightfit {
@@ -27,9 +27,9 @@ struct Samples {
   Eigen::Matrix<double, 3, 4> ray_from_screen;
 
   // One entry per sample: screen position (pixel centres at +0.5), affine depth and derivatives.
-  std::vector<double> x, y, d, d_x, d_y;
-  std::vector<double> weight;
-  std::vector<double> edge_normal_x, edge_normal_y;  // empty unless asked for
+  ScratchVector<double> x, y, d, d_x, d_y;
+  ScratchVector<double> weight;
+  ScratchVector<double> edge_normal_x, edge_normal_y;  // empty unless asked for
 
   SampleCounts counts;
 

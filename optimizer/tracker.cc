@@ -22,12 +22,12 @@ namespace {
 // The corners of all that a map must have room for, none where nothing is shadowed: the hull's rays
 // at the nearest and the farthest depth, as homogeneous world points. u, v, w and z of a map are
 // extreme over the covered receivers at some of these.
-std::vector<Eigen::Vector4d> CornersOfCover(const RayCover& cover, const Light& light) {
+ScratchVector<Eigen::Vector4d> CornersOfCover(const RayCover& cover, const Light& light) {
   const Eigen::Matrix3d ray_from_normalized = cover.normalized_from_ray.inverse();
   const bool is_point = light.kind == Light::Kind::kPoint;
   const Eigen::Matrix3d axes_from_world =
       is_point ? Eigen::Matrix3d(RayFromWorld(light).leftCols<3>()) : FrameAlong(light.direction);
-  std::vector<Eigen::Vector4d> corners;
+  ScratchVector<Eigen::Vector4d> corners;
   if (cover.nothing_shadowed) return corners;
   for (const Eigen::Vector2d& vertex : cover.hull) {
     const Eigen::Vector3d ray = ray_from_normalized * vertex.homogeneous();
@@ -50,7 +50,7 @@ struct Landing {
   bool in_front = true;  // all w > 0
 };
 
-Landing LandingOf(const std::vector<Eigen::Vector4d>& corners,
+Landing LandingOf(const ScratchVector<Eigen::Vector4d>& corners,
                   const Eigen::Matrix4d& map_from_world) {
   Landing landing;
   for (const Eigen::Vector4d& corner : corners) {
@@ -89,7 +89,7 @@ struct Kept {
 };
 
 // The matrix itself, moved by whole texels if it must and can.
-Kept KeepMatrix(const TrackedState& state, const std::vector<Eigen::Vector4d>& corners) {
+Kept KeepMatrix(const TrackedState& state, const ScratchVector<Eigen::Vector4d>& corners) {
   constexpr double kTolerance = 1e-6;  // texels: rounding
   Kept kept = {state.map_from_world, TrackerAction::kKept, false};
   const Landing landing = LandingOf(corners, kept.map_from_world);
@@ -137,7 +137,7 @@ Kept KeepAxis(const TrackedState& state,
 // row as long as all receivers lie in its range.
 absl::StatusOr<LightMatrix> FiguresOf(const Kept& kept,
                                       const SearchInputs& inputs,
-                                      const std::vector<Eigen::Vector4d>& corners,
+                                      const ScratchVector<Eigen::Vector4d>& corners,
                                       MapSize map,
                                       const FitOptions& options) {
   if (inputs.summary.cover.nothing_shadowed) {
@@ -234,36 +234,44 @@ absl::StatusOr<TrackedMatrix> Tracker::UpdateLight(const Receivers& receivers,
   FitOptions roomy = options;
   roomy.margin_percent += options_.cover_margin_percent;
   const auto replace = [&](LightMatrix fresh, TrackerAction action) {
-    *state = {light, map, fresh.map_from_world, 0, 0};
+    state->light = light;
+    state->map = map;
+    state->map_from_world = fresh.map_from_world;
+    state->frames_kept = state->frames_since_update = 0;
     return TrackedMatrix{std::move(fresh), action, 0};
   };
 
-  const bool has_matrix = state->map.width > 0 && IsSameLight(state->light, light) &&
-                          state->map.width == map.width && state->map.height == map.height;
-  const absl::StatusOr<Eigen::Matrix3d> map_from_ray =
-      has_matrix ? MapFromRay(state->map_from_world, light)
-                 : absl::NotFoundError("no matrix to keep");
-  if (!map_from_ray.ok()) {
+  // A status with a message would allocate, and having nothing to keep is no error.
+  std::optional<Eigen::Matrix3d> kept_map_from_ray;
+  if (state->map.width == map.width && state->map.height == map.height &&
+      IsSameLight(state->light, light)) {
+    const absl::StatusOr<Eigen::Matrix3d> map_from_ray = MapFromRay(state->map_from_world, light);
+    if (map_from_ray.ok()) kept_map_from_ray = *map_from_ray;
+  }
+  if (!kept_map_from_ray.has_value()) {
     absl::StatusOr<LightMatrix> first = FitInputs(inputs, map, roomy);
     if (!first.ok()) return first.status();
     return replace(*std::move(first), TrackerAction::kFirst);
   }
 
-  const std::vector<Eigen::Vector4d> corners = CornersOfCover(prepared->summary.cover, light);
+  const ScratchVector<Eigen::Vector4d> corners = CornersOfCover(prepared->summary.cover, light);
   const bool is_update = state->frames_since_update + 1 >= options_.update_every_frames;
   Kept kept = KeepMatrix(*state, corners);
   if (options_.keeps == TrackerOptions::Keeps::kAxis) {
     const bool stays = kept.is_valid && kept.action == TrackerAction::kKept && !is_update;
-    if (!stays) kept = KeepAxis(*state, inputs, *map_from_ray, roomy);
+    if (!stays) kept = KeepAxis(*state, inputs, *kept_map_from_ray, roomy);
   }
-  const bool may_stay = kept.is_valid || (!options_.hard_validity && !is_update);
-  const absl::StatusOr<LightMatrix> figures =
-      may_stay ? FiguresOf(kept, inputs, corners, map, options)
-               : absl::FailedPreconditionError("what must be covered is not");
-  if (is_update || !figures.ok()) {
+  std::optional<LightMatrix> figures;
+  if (kept.is_valid || (!options_.hard_validity && !is_update)) {
+    absl::StatusOr<LightMatrix> matrix = FiguresOf(kept, inputs, corners, map, options);
+    if (matrix.ok()) figures = *std::move(matrix);
+  }
+  if (is_update || !figures.has_value()) {
     absl::StatusOr<LightMatrix> fresh = FitInputs(inputs, map, roomy);
-    if (!fresh.ok() && !figures.ok()) return fresh.status();
-    if (fresh.ok() && !figures.ok()) return replace(*std::move(fresh), TrackerAction::kInvalid);
+    if (!figures.has_value()) {
+      if (!fresh.ok()) return fresh.status();
+      return replace(*std::move(fresh), TrackerAction::kInvalid);
+    }
     const bool is_better =
         fresh.ok() && (options_.replace_below >= 1.0 ||
                        MedianSquared(*fresh) < options_.replace_below * MedianSquared(*figures));
@@ -273,39 +281,43 @@ absl::StatusOr<TrackedMatrix> Tracker::UpdateLight(const Receivers& receivers,
   state->map_from_world = figures->map_from_world;
   state->frames_kept = crawls ? 0 : state->frames_kept + 1;
   state->frames_since_update = is_update ? 0 : state->frames_since_update + 1;
-  return TrackedMatrix{*figures, kept.action, state->frames_kept};
+  return TrackedMatrix{*std::move(figures), kept.action, state->frames_kept};
 }
 
-std::vector<absl::StatusOr<TrackedMatrix>> Tracker::Update(const Readback& readback,
-                                                           absl::Span<const Light> lights,
-                                                           MapSize map) {
-  std::vector<absl::StatusOr<TrackedMatrix>> results(lights.size());
+TrackedMatrices Tracker::Update(const Readback& readback,
+                                absl::Span<const Light> lights,
+                                MapSize map) {
+  TrackedMatrices results(lights.size());
   absl::Status status = ValidateTrackerOptions(options_);
-  const double margin_texels = options_.fit.margin_texels;
-  if (status.ok()) status = ValidateMapSize(map, margin_texels);
+  if (status.ok()) status = ValidateMapSize(map, options_.fit.margin_texels);
   uint32_t light_mask = 0;
   for (const Light& light : lights) {
     if (ValidateLight(light).ok()) light_mask |= uint32_t{1} << light.shadow_bit;
   }
   const absl::StatusOr<Receivers> receivers =
       status.ok() ? FindReceivers(readback, light_mask, options_.fit.samples) : status;
-  std::vector<TrackedState> states(lights.size());
   for (size_t i = 0; i < lights.size(); ++i) {
     const Light& light = lights[i];
-    const auto known = std::find_if(states_.begin(), states_.end(), [&](const TrackedState& s) {
-      return s.light.name == light.name;
-    });
-    states[i].light = light;
-    if (known != states_.end()) states[i] = std::move(*known);
+    // States stand in the order of the lights, so that those of one frame are mostly in place.
+    const auto known = std::find_if(
+        states_.begin() + std::min(i, states_.size()), states_.end(), [&](const TrackedState& s) {
+          return s.light.name == light.name;
+        });
+    if (known == states_.end()) {
+      states_.insert(states_.begin() + i, TrackedState());
+      states_[i].light = light;
+    } else {
+      std::swap(states_[i], *known);
+    }
     if (!receivers.ok()) {
       results[i] = receivers.status();
     } else if (absl::Status light_status = ValidateLight(light); !light_status.ok()) {
       results[i] = std::move(light_status);
     } else {
-      results[i] = UpdateLight(*receivers, light, map, &states[i]);
+      results[i] = UpdateLight(*receivers, light, map, &states_[i]);
     }
   }
-  states_ = std::move(states);
+  states_.resize(lights.size());
   return results;
 }
 

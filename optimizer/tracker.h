@@ -17,6 +17,7 @@
 #include "absl/types/span.h"
 #include "geometry/clip.h"
 #include "geometry/light.h"
+#include "geometry/scratch.h"
 #include "optimizer/fit_options.h"
 #include "optimizer/light_matrix.h"
 #include "optimizer/readback.h"
@@ -85,8 +86,12 @@ struct TrackedState {
   int64_t frames_since_update = 0;
 };
 
+// Element i belongs to light i. A ScratchVector, as LightMatrices.
+using TrackedMatrices = ScratchVector<absl::StatusOr<TrackedMatrix>>;
+
 // One sequence of frames. A light is known by its name; those that are not in a frame are
-// forgotten. Not for use by two threads at once.
+// forgotten. Not for use by two threads at once. Inside a ScratchScope the results and all working
+// memory come from there; what a tracker remembers does not.
 class Tracker {
  public:
   explicit Tracker(const TrackerOptions& options) : options_(options) {}
@@ -98,9 +103,7 @@ class Tracker {
   // Element i belongs to lights[i] and has its own status, as FitLights(). Where nothing can be
   // fitted (no shadow edge in view, say) but the matrix of the frame before is valid still, that is
   // the result.
-  std::vector<absl::StatusOr<TrackedMatrix>> Update(const Readback& readback,
-                                                    absl::Span<const Light> lights,
-                                                    MapSize map);
+  TrackedMatrices Update(const Readback& readback, absl::Span<const Light> lights, MapSize map);
 
   // To stop and go on in another process.
   const std::vector<TrackedState>& state() const { return states_; }

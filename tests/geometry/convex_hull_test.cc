@@ -43,7 +43,7 @@ bool IsExtreme(const Eigen::Vector2d& point, const std::vector<Eigen::Vector2d>&
   return false;
 }
 
-bool Contains(const Polygon& polygon, const Eigen::Vector2d& point) {
+bool Contains(absl::Span<const Eigen::Vector2d> polygon, const Eigen::Vector2d& point) {
   return std::find(polygon.begin(), polygon.end(), point) != polygon.end();
 }
 

@@ -152,7 +152,7 @@ TEST(FitLights, EqualsFitLightOneByOne) {
         EXPECT_EQ(together[i].status(), alone.status());
         continue;
       }
-      EXPECT_EQ(together[i]->light_name, scene.lights[i].name);
+      EXPECT_EQ(std::string_view(together[i]->light_name), scene.lights[i].name);
       EXPECT_TRUE(SameBytes(together[i]->map_from_world, alone->map_from_world)) << choice.name;
     }
   }
@@ -179,7 +179,7 @@ TEST(FitLights, OfNoLightsIsEmpty) {
 TEST(FitLights, RunsFromSeveralThreadsAtOnce) {
   const TestScene scene(7, 6);
   const auto expected = FitLights(scene.View(), scene.lights, kMap);
-  std::vector<std::vector<absl::StatusOr<LightMatrix>>> results(4);
+  std::vector<LightMatrices> results(4);
   std::vector<std::thread> threads;
   for (auto& result : results) {
     threads.emplace_back([&] { result = FitLights(scene.View(), scene.lights, kMap); });

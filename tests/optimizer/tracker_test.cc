@@ -48,10 +48,9 @@ struct Walk {
 };
 
 // Runs a tracker over the walk; [frame][light].
-std::vector<std::vector<absl::StatusOr<TrackedMatrix>>> Track(const Walk& walk,
-                                                              const TrackerOptions& options) {
+std::vector<TrackedMatrices> Track(const Walk& walk, const TrackerOptions& options) {
   Tracker tracker(options);
-  std::vector<std::vector<absl::StatusOr<TrackedMatrix>>> results;
+  std::vector<TrackedMatrices> results;
   for (const SyntheticReadback& frame : walk.frames) {
     results.push_back(tracker.Update(frame.View(), walk.lights, kMap));
   }
