@@ -23,9 +23,9 @@ using Wide = boost::multiprecision::number<boost::multiprecision::cpp_bin_float_
 using WideMatrix3 = Eigen::Matrix<Wide, 3, 3>;
 using WideMatrix6 = Eigen::Matrix<Wide, 6, 6>;
 
-// The nearest sum of three doubles.
-void AddWide(Wide value, ExactSum* sum) {
-  for (int part = 0; part < 3; ++part) {
+// The nearest sum of so many doubles.
+void AddWide(Wide value, int num_parts, ExactSum* sum) {
+  for (int part = 0; part < num_parts; ++part) {
     const auto rounded = value.convert_to<double>();
     sum->Add(rounded);
     value -= rounded;
@@ -36,6 +36,14 @@ Wide ToWide(const ExactSum& sum) {
   Wide value = 0;
   for (const double part : sum.Parts()) value += part;
   return value;
+}
+
+// How many doubles hold what the way to light space and back takes, which is the fourth power of
+// the frame's condition: two for lights within some ten scene sizes, three up to a million.
+int NumParts(const Eigen::Matrix3d& normalized_from_ray) {
+  constexpr double kMostForTwo = 1e3;
+  const double condition = normalized_from_ray.norm() * normalized_from_ray.inverse().norm();
+  return condition <= kMostForTwo ? 2 : 3;
 }
 
 // The tensor in coordinates X' = N X, math.md 4: N acts on the first pair of indices, its
@@ -102,7 +110,8 @@ SummaryTotal TotalOf(const Summary& summary, const Light& light) {
   const WideMatrix3 ray_from_normalized = cover.normalized_from_ray.cast<Wide>().inverse();
   const WideMatrix6 tensor =
       Transformed(summary.tensor.entries().cast<Wide>(), ray_from_normalized);
-  for (int i = 0; i < 36; ++i) AddWide(tensor(i / 6, i % 6), &total.tensor[i]);
+  const int num_parts = NumParts(cover.normalized_from_ray);
+  for (int i = 0; i < 36; ++i) AddWide(tensor(i / 6, i % 6), num_parts, &total.tensor[i]);
   total.total_weight.Add(summary.total_weight);
   total.footprint_sum.Add(summary.footprint_sum);
   total.counts = summary.counts;

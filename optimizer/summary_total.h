@@ -6,8 +6,8 @@
 // Out:  SummaryTotal, about a kilobyte; and from it the Summary of all the samples together.
 //
 // Every frame has normalised rays of its own. A total lives in light space, which all frames share;
-// what precision that costs with distant lights (docs/design.md) is made up for by sums of three
-// doubles each, added without rounding.
+// what precision that costs with distant lights (docs/design.md) is made up for by two or
+// three doubles for each sum, added without rounding.
 #pragma once
 
 #include <Eigen/Core>
