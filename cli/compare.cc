@@ -41,13 +41,20 @@ Typeface FindTypeface() {
   return typeface;
 }
 
+// Whether the light was there in the next frame too.
+bool HasNext(const CompareInputs& inputs, size_t light) {
+  return inputs.next_readback == nullptr || inputs.next_readback->file.light_status[light].ok();
+}
+
 std::vector<LightComparison> CompareAll(const CompareInputs& inputs, bool quiet) {
-  const size_t num_rows = RowNames(inputs.options.given).size();
-  Progress progress(static_cast<int>(inputs.lights.size() * num_rows), quiet);
+  const size_t steps_per_row = inputs.next != nullptr ? 2 : 1;
+  const size_t num_steps = RowNames(inputs.options.given).size() * steps_per_row;
+  Progress progress(static_cast<int>(inputs.lights.size() * num_steps), quiet);
   CompareOptions options = inputs.options;
   std::vector<LightComparison> comparisons;
   for (size_t i = 0; i < inputs.lights.size(); ++i) {
     const Light& light = inputs.lights[i];
+    options.next = HasNext(inputs, i) ? inputs.next.get() : nullptr;
     size_t num_begun = 0;
     options.before_row = [&](const std::string& row) {
       if (num_begun++ > 0) progress.Advance();
@@ -56,8 +63,8 @@ std::vector<LightComparison> CompareAll(const CompareInputs& inputs, bool quiet)
     comparisons.push_back(inputs.light_status[i].ok()
                               ? CompareMaps(inputs.stage, light, options)
                               : FailedRows(light, inputs.light_status[i], options));
-    // Rows that were not begun, as of a light that cannot be used, are done as well.
-    for (size_t row = num_begun == 0 ? 0 : num_begun - 1; row < num_rows; ++row) {
+    // What was not begun, as of a light that cannot be used, is done as well.
+    for (size_t step = num_begun == 0 ? 0 : num_begun - 1; step < num_steps; ++step) {
       progress.Advance();
     }
   }
@@ -88,6 +95,7 @@ CompareHeading HeadingOf(const CompareInputs& inputs) {
   heading.readback_height = inputs.stage.readback.height();
   heading.map = inputs.options.map;
   heading.fit = MethodText(inputs.options.fit);
+  heading.next = inputs.next_title;
   return heading;
 }
 
@@ -106,6 +114,7 @@ absl::Status WritePicture(const CompareFlags& flags,
   const size_t light = LightToDraw(flags, comparisons);
   CompareOptions options = inputs.options;
   options.keep_images = true;
+  options.next = nullptr;
   const LightComparison comparison = CompareMaps(inputs.stage, inputs.lights[light], options);
   const ComparePictureOptions picture = {inputs.title, options.map, flags.picture_bias};
   return WritePng(DrawComparePicture(inputs.stage, comparison, picture, typeface),

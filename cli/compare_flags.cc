@@ -25,9 +25,13 @@ constexpr char kExamples[] =
     "      --picture methods.png\n"
     "  lightfit compare generate --camera 0,1.7,18:0,0.5,0 --random-lights 500 --csv lights.csv\n"
     "  lightfit compare frame.exr --lights scene.json --matrix engine=engine.json\n"
+    "  lightfit compare sponza.glb --camera 3.5,1.7,-4.2:-9,2.2,-4.4:55 --light sun=sun:1,-3,0.5 "
+    "\\\n"
+    "      --camera-step 0.1,0,0,0.5\n"
     "\n"
     "Units: positions in world units, images in pixels, maps in texels. A read-back has no true\n"
-    "shadows to count wrong pixels by: it gives energies and footprints alone.\n"
+    "shadows to count wrong or flipped pixels by: it gives energies, footprints and, with\n"
+    "--next-readback, drift.\n"
     "--matrix: a result of lightfit fit --json, or {\"map_from_world\": [16 numbers], \"map\":\n"
     "{\"width\": 1024, \"height\": 1024}}, or {\"clip_from_world\": [16 numbers], \"clip\": "
     "\"opengl\"}.";
@@ -108,6 +112,46 @@ void DeclareMatrices(CLI::App* app, CompareFlags* flags) {
       ->group("Methods");
 }
 
+void DeclareCrawl(CLI::App* app, CrawlFlags* flags) {
+  const std::string group = "Crawl";
+  app->add_flag("--crawl",
+                flags->is_wanted,
+                "Measure how much shadows crawl to the next frame, where every method is set up "
+                "anew and scene and lights stand still. Alone: the camera moves forward by 1 % of "
+                "the median depth of what it sees and turns by half a degree. The options below "
+                "imply --crawl")
+      ->group(group);
+  CLI::Option* step = app->add_option_function<std::string>(
+      "--camera-step",
+      [flags](const std::string& text) {
+        flags->is_wanted = true;
+        ParseInto("--camera-step", text, ParseCameraStep, &flags->step);
+      },
+      "How the camera moves to the next frame: world units in its own directions, then turns to "
+      "the right and upwards, degrees");
+  step->type_name("FORWARD,RIGHT,UP[,YAW[,PITCH]]")->group(group);
+  app->add_option_function<int>(
+         "--next-frame",
+         [flags](int frame) {
+           flags->is_wanted = true;
+           flags->next_frame = frame;
+         },
+         "The next frame is that of the --camera scene file [of --next-readback: --frame + 1]")
+      ->type_name("N")
+      ->check(CLI::NonNegativeNumber)
+      ->excludes(step)
+      ->group(group);
+  app->add_option_function<std::string>(
+         "--next-readback",
+         [flags](const std::string& path) {
+           flags->is_wanted = true;
+           flags->next_readback_path = path;
+         },
+         "The next frame of a read-back, with the same lights")
+      ->type_name("FILE.exr")
+      ->group(group);
+}
+
 void DeclareOutput(CLI::App* app, CompareFlags* flags) {
   const std::string group = "Output";
   app->add_flag("--per-light", flags->per_light, "With many lights a table for each of them too")
@@ -152,6 +196,7 @@ void DeclareCompareFlags(CLI::App* app, CompareFlags* flags) {
   DeclareSceneFlags(app, &flags->scene, "SCENE|READBACK.exr");
   DeclareSizes(app, flags);
   DeclareMatrices(app, flags);
+  DeclareCrawl(app, &flags->crawl);
   DeclareMethodFlags(app, &flags->fit.options);
   DeclareOutput(app, flags);
   const std::string group = "Read-back";

@@ -11,6 +11,7 @@
 
 #include "absl/status/statusor.h"
 #include "absl/types/optional.h"
+#include "cli/camera_step.h"
 #include "cli/compare_choice.h"
 #include "cli/fit_flags.h"
 #include "cli/scene_flags.h"
@@ -21,6 +22,14 @@ namespace lightfit {
 // --matrix NAME=FILE.
 struct MatrixFlag {
   std::string name, path;
+};
+
+// Where crawl is measured to.
+struct CrawlFlags {
+  bool is_wanted = false;           // --crawl, or any of the others
+  absl::optional<int> next_frame;   // of the --camera scene file
+  absl::optional<CameraStep> step;  // absent: DefaultCameraStep()
+  std::string next_readback_path;
 };
 
 struct CompareFlags {
@@ -35,6 +44,7 @@ struct CompareFlags {
   MapSize map = {400, 400};
   std::vector<MatrixFlag> matrices;
   BiasOptions bias;  // constant_share only
+  CrawlFlags crawl;
 
   bool per_light = false;
   std::string csv_path;

@@ -38,6 +38,15 @@ absl::Status ReadSceneInputs(const CompareFlags& flags, CompareInputs* inputs) {
   return absl::OkStatus();
 }
 
+FitFlags ReadbackFlags(const CompareFlags& flags) {
+  FitFlags fit = flags.fit;
+  fit.readback_path = flags.scene.scene;
+  fit.lights = flags.scene.lights;
+  fit.camera_path = flags.scene.camera;
+  fit.frame = flags.scene.frame;
+  return fit;
+}
+
 absl::Status ReadReadbackInputs(const CompareFlags& flags, CompareInputs* inputs) {
   if (flags.scene.num_random_lights > 0) {
     return absl::InvalidArgumentError(
@@ -55,12 +64,7 @@ absl::Status ReadReadbackInputs(const CompareFlags& flags, CompareInputs* inputs
         "--picture: a read-back has no true shadows to draw; compare on a scene, or draw "
         "footprints with lightfit fit --picture");
   }
-  FitFlags fit = flags.fit;
-  fit.readback_path = flags.scene.scene;
-  fit.lights = flags.scene.lights;
-  fit.camera_path = flags.scene.camera;
-  fit.frame = flags.scene.frame;
-  absl::StatusOr<FitInputs> readback = ReadFitInputs(fit);
+  absl::StatusOr<FitInputs> readback = ReadFitInputs(ReadbackFlags(flags));
   if (!readback.ok()) return readback.status();
   inputs->readback = std::make_unique<FitInputs>(*std::move(readback));
   inputs->title = flags.scene.scene;
@@ -70,6 +74,89 @@ absl::Status ReadReadbackInputs(const CompareFlags& flags, CompareInputs* inputs
   if (!stage.ok()) return stage.status();
   inputs->stage = *std::move(stage);
   return absl::OkStatus();
+}
+
+// The camera of the next frame, and how to call it.
+absl::StatusOr<Camera> NextCamera(const CompareFlags& flags,
+                                  const SurfaceImage& screen,
+                                  std::string* title) {
+  if (!flags.crawl.next_frame.has_value()) {
+    const CameraStep step = flags.crawl.step.value_or(DefaultCameraStep(screen));
+    *title = absl::StrCat("the camera moves ", CameraStepText(step));
+    return Stepped(screen.camera, step);
+  }
+  SceneFlags scene = flags.scene;
+  scene.frame = *flags.crawl.next_frame;
+  if (scene.view.has_value()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--next-frame ",
+                     scene.frame,
+                     ": --camera ",
+                     scene.camera,
+                     " is a single view, want --camera FILE with frames; or --camera-step"));
+  }
+  *title = absl::StrCat("frame ", scene.frame, " of ", scene.camera);
+  return MakeViewCamera(scene, screen.camera.width, screen.camera.height);
+}
+
+absl::StatusOr<CompareStage> NextSceneStage(const CompareFlags& flags, CompareInputs* inputs) {
+  if (!flags.crawl.next_readback_path.empty()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--next-readback ",
+                     flags.crawl.next_readback_path,
+                     ": the next frame of a scene is rendered, want --camera-step or --next-frame "
+                     "instead"));
+  }
+  const absl::StatusOr<Camera> camera =
+      NextCamera(flags, inputs->stage.screen, &inputs->next_title);
+  if (!camera.ok()) return camera.status();
+  const Readback& readback = inputs->stage.readback;
+  absl::StatusOr<CompareStage> stage =
+      MakeStage(inputs->scene->caster, *camera, readback.width(), readback.height());
+  if (!stage.ok()) return stage;
+  const absl::StatusOr<std::string> sight = CheckSight(inputs->scene->caster, stage->screen);
+  if (!sight.ok()) return sight.status();
+  return stage;
+}
+
+absl::StatusOr<CompareStage> NextReadbackStage(const CompareFlags& flags, CompareInputs* inputs) {
+  if (flags.crawl.step.has_value()) {
+    return absl::InvalidArgumentError(
+        "--camera-step: a read-back has one camera only, want --next-readback FILE.exr; or compare "
+        "on a scene");
+  }
+  if (flags.crawl.next_readback_path.empty()) {
+    return absl::InvalidArgumentError(
+        "--crawl: want the next frame of the read-back, --next-readback FILE.exr");
+  }
+  FitFlags fit = ReadbackFlags(flags);
+  fit.readback_path = flags.crawl.next_readback_path;
+  fit.frame = flags.crawl.next_frame.value_or(flags.scene.frame + 1);
+  absl::StatusOr<FitInputs> readback = ReadFitInputs(fit);
+  if (!readback.ok()) return readback.status();
+  inputs->next_readback = std::make_unique<FitInputs>(*std::move(readback));
+  inputs->next_title = flags.crawl.next_readback_path;
+  return MakeStage(inputs->next_readback->file.View());
+}
+
+absl::Status ReadNextFrame(const CompareFlags& flags, CompareInputs* inputs) {
+  if (!flags.crawl.is_wanted) return absl::OkStatus();
+  absl::StatusOr<CompareStage> stage =
+      flags.is_readback() ? NextReadbackStage(flags, inputs) : NextSceneStage(flags, inputs);
+  if (stage.ok()) {
+    absl::StatusOr<NextFrame> next = MakeNextFrame(inputs->stage, *std::move(stage));
+    if (!next.ok()) return next.status();
+    inputs->next = std::make_unique<NextFrame>(*std::move(next));
+    inputs->options.next = inputs->next.get();
+    if (!SeesAnythingTwice(*inputs->next)) {
+      inputs->warnings.emplace_back(
+          "no surface is seen in both frames, so there is no crawl to measure; want a smaller step "
+          "of the camera");
+    }
+    return absl::OkStatus();
+  }
+  return absl::Status(stage.status().code(),
+                      absl::StrCat("next frame: ", stage.status().message()));
 }
 
 absl::Status CheckPictureLight(const std::string& name, const std::vector<Light>& lights) {
@@ -96,6 +183,8 @@ absl::StatusOr<CompareInputs> ReadCompareInputs(const CompareFlags& flags) {
   }
   absl::Status status =
       flags.is_readback() ? ReadReadbackInputs(flags, &inputs) : ReadSceneInputs(flags, &inputs);
+  if (!status.ok()) return status;
+  status = ReadNextFrame(flags, &inputs);
   if (!status.ok()) return status;
   status = CheckPictureLight(flags.picture_light, inputs.lights);
   if (!status.ok()) return status;

@@ -18,14 +18,18 @@
 namespace lightfit {
 
 struct CompareInputs {
-  // One of the two is there and outlives `stage`.
+  // The scene, or the read-back and maybe its next frame: they outlive `stage` and `next`.
   std::unique_ptr<LoadedScene> scene;
-  std::unique_ptr<FitInputs> readback;
+  std::unique_ptr<FitInputs> readback, next_readback;
 
   CompareStage stage;
   std::string title;
   std::vector<Light> lights;
   std::vector<absl::Status> light_status;  // whether the light could be read
+
+  std::unique_ptr<NextFrame> next;  // null: no crawl is measured
+  std::string next_title;           // "the camera moves 0.1 forward", "frame 3", "0002.exr"
+
   CompareOptions options;
   std::vector<std::string> warnings;
 };

@@ -21,6 +21,20 @@ v1::WrongPixels WrongPixelsToProto(const WrongPixels& wrong) {
   return proto;
 }
 
+v1::Crawl CrawlToProto(const MapCrawl& crawl) {
+  v1::Crawl proto;
+  proto.set_num_points(crawl.points.num_points);
+  proto.set_phase_drift_texels(crawl.points.phase_drift_texels);
+  proto.set_moved_share(crawl.points.moved_share);
+  proto.set_num_edge_points(crawl.points.num_edge_points);
+  proto.set_edge_crawl_px(crawl.points.edge_crawl_px);
+  if (!crawl.flicker.has_value()) return proto;
+  proto.mutable_flicker()->set_judged(crawl.flicker->judged);
+  proto.mutable_flicker()->set_flips_ideal(crawl.flicker->flips_ideal);
+  proto.mutable_flicker()->set_flips_practical(crawl.flicker->flips_practical);
+  return proto;
+}
+
 void SetRatios(const ComparedMap& map, const ComparedMap& lightfit, v1::MethodComparison* proto) {
   const absl::optional<double> energy = EnergyRatio(map, lightfit);
   if (energy.has_value()) proto->set_energy_ratio(*energy);
@@ -45,6 +59,7 @@ v1::MethodComparison MethodToProto(const ComparedMap& map, const ComparedMap& li
   if (map.wrong.has_value()) *proto.mutable_wrong() = WrongPixelsToProto(*map.wrong);
   if (map.foretold.has_value()) proto.set_foretold_share(*map.foretold);
   SetRatios(map, lightfit, &proto);
+  if (map.crawl.has_value()) *proto.mutable_crawl() = CrawlToProto(*map.crawl);
   return proto;
 }
 
@@ -84,7 +99,15 @@ v1::MethodTotals TotalsToProto(const MethodTotals& totals) {
   if (totals.practical.has_value()) *proto.mutable_practical() = PixelsToProto(*totals.practical);
   if (totals.mean_energy_ratio.has_value()) proto.set_mean_energy_ratio(*totals.mean_energy_ratio);
   proto.set_num_energy_lights(totals.num_energy_lights);
+  if (totals.crawl.has_value()) *proto.mutable_crawl() = CrawlToProto(*totals.crawl);
+  proto.set_num_crawl_lights(totals.num_crawl_lights);
   return proto;
+}
+
+// Of the image that is judged, or of the read-back.
+v1::Camera CameraOf(const CompareStage& stage) {
+  return stage.has_truth() ? CameraToProto(stage.screen.camera)
+                           : CameraToProto(stage.readback.camera, stage.readback.depth_kind);
 }
 
 }  // namespace
@@ -95,12 +118,9 @@ v1::Comparison ComparisonToProto(const std::string& source,
                                  absl::Span<const LightComparison> lights) {
   v1::Comparison proto;
   proto.set_source(source);
-  if (stage.has_truth()) {
-    *proto.mutable_camera() = CameraToProto(stage.screen.camera);
-    proto.set_bias_constant_share(options.bias.constant_share);
-  } else {
-    *proto.mutable_camera() = CameraToProto(stage.readback.camera, stage.readback.depth_kind);
-  }
+  *proto.mutable_camera() = CameraOf(stage);
+  if (options.next != nullptr) *proto.mutable_next_camera() = CameraOf(options.next->stage);
+  if (stage.has_truth()) proto.set_bias_constant_share(options.bias.constant_share);
   proto.set_readback_width(stage.readback.width());
   proto.set_readback_height(stage.readback.height());
   proto.mutable_map()->set_width(options.map.width);

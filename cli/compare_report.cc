@@ -1,10 +1,10 @@
 #include "cli/compare_report.h"
 
-#include <charconv>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "cli/csv.h"
 #include "cli/number.h"
 #include "cli/table.h"
 
@@ -22,6 +22,14 @@ constexpr char kFigureLegend[] =
     "pixels;\n"
     "lower is better. It is what as-published and line minimise, whatever lightfit does.\n"
     "Footprint: how far one texel reaches on the screen, in read-back pixels; below 1 is finer.\n";
+constexpr char kCrawlLegend[] =
+    "Crawl, to the next frame: how far points of the scene move within their texels, root mean "
+    "square,\n"
+    "0 (they stay) to 0.41 (drawn anew); and what that is across shadow edges, read-back pixels.\n";
+constexpr char kFlipLegend[] =
+    "Flips: pixels seen in both frames whose shadow changes though nothing moved, ideal bias, % of "
+    "the\n"
+    "judged.\n";
 constexpr char kTotalLegend[] =
     "Totals count the lights for which both the method and lightfit have a matrix. Ratio: of total "
     "to\n"
@@ -58,8 +66,29 @@ class Notes {
   std::vector<std::pair<std::string, std::string>> notes_;
 };
 
+void AddCrawlColumns(bool has_truth, Table* table) {
+  table->AddColumn("crawl", "texels");
+  table->AddColumn("crawl", "pixels");
+  if (has_truth) table->AddColumn("crawl", "% flips");
+}
+
+void AppendCrawlCells(const absl::optional<MapCrawl>& crawl,
+                      bool has_truth,
+                      std::vector<std::string>* cells) {
+  const bool is_known = crawl.has_value();
+  cells->push_back(is_known && crawl->points.num_points > 0
+                       ? FigureText(crawl->points.phase_drift_texels)
+                       : "-");
+  cells->push_back(is_known && crawl->points.num_edge_points > 0
+                       ? FigureText(crawl->points.edge_crawl_px)
+                       : "-");
+  if (!has_truth) return;
+  const absl::optional<double> flips = is_known ? IdealFlipShare(*crawl) : absl::nullopt;
+  cells->push_back(flips.has_value() ? PercentText(*flips) : "-");
+}
+
 // "sun: 262266 pixels lit ...", the table, the notes.
-std::string LightText(const LightComparison& light, bool has_truth) {
+std::string LightText(const LightComparison& light, bool has_truth, bool has_crawl) {
   Table table;
   table.AddColumn("", "method");
   if (has_truth) {
@@ -74,6 +103,7 @@ std::string LightText(const LightComparison& light, bool has_truth) {
   table.AddColumn("energy", "x lightfit");
   table.AddColumn("footprint", "rms");
   table.AddColumn("footprint", "worst");
+  if (has_crawl) AddCrawlColumns(has_truth, &table);
   Notes notes;
   for (const ComparedMap& map : light.maps) {
     if (!map.status.ok()) {
@@ -96,6 +126,7 @@ std::string LightText(const LightComparison& light, bool has_truth) {
     cells.push_back(RatioText(EnergyRatio(map, light.lightfit())));
     cells.push_back(measured ? FigureText(map.figures->footprint.rms) : "-");
     cells.push_back(measured ? FigureText(map.figures->footprint.worst) : "-");
+    if (has_crawl) AppendCrawlCells(map.crawl, has_truth, &cells);
     table.AddRow(std::move(cells));
   }
   std::string title = absl::StrCat(light.light.name, ": ");
@@ -119,7 +150,7 @@ void AppendPixelCells(const absl::optional<MethodTotals::Pixels>& pixels,
   cells->push_back(absl::StrCat(pixels->num_wins));
 }
 
-std::string TotalsText(absl::Span<const LightComparison> lights, bool has_truth) {
+std::string TotalsText(absl::Span<const LightComparison> lights, bool has_truth, bool has_crawl) {
   Table table;
   table.AddColumn("", "method");
   if (has_truth) {
@@ -130,6 +161,7 @@ std::string TotalsText(absl::Span<const LightComparison> lights, bool has_truth)
     }
   }
   table.AddColumn("energy", "mean");
+  if (has_crawl) AddCrawlColumns(has_truth, &table);
   table.AddColumn("lights", "counted");
   table.AddColumn("lights", "failed");
   for (const MethodTotals& totals : TotalsOf(lights)) {
@@ -139,6 +171,7 @@ std::string TotalsText(absl::Span<const LightComparison> lights, bool has_truth)
       AppendPixelCells(totals.practical, &cells);
     }
     cells.push_back(RatioText(totals.mean_energy_ratio));
+    if (has_crawl) AppendCrawlCells(totals.crawl, has_truth, &cells);
     cells.push_back(absl::StrCat(totals.num_lights));
     cells.push_back(absl::StrCat(totals.num_failed));
     table.AddRow(std::move(cells));
@@ -146,25 +179,25 @@ std::string TotalsText(absl::Span<const LightComparison> lights, bool has_truth)
   return absl::StrCat(lights.size(), " lights\n\n", table.Text());
 }
 
-std::string CsvField(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"') quoted.push_back('"');
-    quoted.push_back(c == '\n' || c == '\r' ? ' ' : c);
+void AppendCsvCrawl(const absl::optional<MapCrawl>& crawl, std::string* csv) {
+  if (crawl.has_value()) {
+    absl::StrAppend(csv,
+                    CsvNumber(crawl->points.phase_drift_texels),
+                    ",",
+                    CsvNumber(crawl->points.moved_share),
+                    ",",
+                    CsvNumber(crawl->points.edge_crawl_px),
+                    ",");
+  } else {
+    absl::StrAppend(csv, ",,,");
   }
-  return quoted + "\"";
-}
-
-// The shortest digits that read back as the same number.
-std::string CsvNumber(double value) {
-  char digits[32];
-  const std::to_chars_result end = std::to_chars(digits, digits + sizeof(digits), value);
-  return std::string(digits, end.ptr);
-}
-
-std::string CsvNumber(const absl::optional<double>& value) {
-  return value.has_value() ? CsvNumber(*value) : "";
+  if (crawl.has_value() && crawl->flicker.has_value()) {
+    const Flicker& flicker = *crawl->flicker;
+    absl::StrAppend(csv, flicker.judged, ",", flicker.flips_ideal, ",", flicker.flips_practical);
+    absl::StrAppend(csv, ",");
+  } else {
+    absl::StrAppend(csv, ",,,");
+  }
 }
 
 void AppendCsvRow(const LightComparison& light, const ComparedMap& map, std::string* csv) {
@@ -204,6 +237,7 @@ void AppendCsvRow(const LightComparison& light, const ComparedMap& map, std::str
     absl::StrAppend(csv, ",,,,");
   }
   absl::StrAppend(csv, CsvNumber(map.foretold), ",");
+  AppendCsvCrawl(map.crawl, csv);
   absl::StrAppend(csv, light.samples.used, ",", light.lighting.lit, ",", light.lighting.shadowed);
   absl::StrAppend(
       csv, ",", CsvField(map.status.ok() ? map.note : std::string(map.status.message())), "\n");
@@ -227,18 +261,22 @@ std::string CompareReportText(const CompareHeading& heading,
                         heading.map.width,
                         heading.map.height,
                         heading.fit);
+  const bool has_crawl = !heading.next.empty();
+  if (has_crawl) absl::StrAppend(&text, "crawl: to the next frame, ", heading.next, "\n");
   const bool totals = lights.size() != 1;
   if (!totals || per_light) {
     for (const LightComparison& light : lights) {
-      absl::StrAppend(&text, "\n", LightText(light, has_truth));
+      absl::StrAppend(&text, "\n", LightText(light, has_truth, has_crawl));
     }
   }
-  if (totals) absl::StrAppend(&text, "\n", TotalsText(lights, has_truth));
+  if (totals) absl::StrAppend(&text, "\n", TotalsText(lights, has_truth, has_crawl));
   if (has_truth)
     absl::StrAppend(&text, kPixelLegend);
   else
     absl::StrAppend(&text, "\nA read-back alone has no truth to count wrong pixels by.\n");
-  absl::StrAppend(&text, kFigureLegend, totals ? kTotalLegend : "");
+  absl::StrAppend(&text, kFigureLegend);
+  if (has_crawl) absl::StrAppend(&text, kCrawlLegend, has_truth ? kFlipLegend : "");
+  if (totals) absl::StrAppend(&text, kTotalLegend);
   return text;
 }
 
@@ -246,7 +284,8 @@ std::string CompareCsv(absl::Span<const LightComparison> lights) {
   std::string csv =
       "light,kind,x,y,z,method,status,wrong_ideal,wrong_practical,wrong_practical_weighted,"
       "wrong_outside,ratio_ideal,ratio_practical,energy,energy_ratio,footprint_rms,"
-      "footprint_worst,foretold_share,samples,pixels_lit,pixels_shadowed,note\n";
+      "footprint_worst,foretold_share,crawl_texels,crawl_moved_share,crawl_edge_px,"
+      "flips_judged,flips_ideal,flips_practical,samples,pixels_lit,pixels_shadowed,note\n";
   for (const LightComparison& light : lights) {
     for (const ComparedMap& map : light.maps) AppendCsvRow(light, map, &csv);
   }

@@ -18,7 +18,8 @@ struct CompareHeading {
   int screen_width = 0, screen_height = 0;  // 0: only a read-back is known
   int readback_width = 0, readback_height = 0;
   MapSize map;
-  std::string fit;  // of the row "lightfit", see MethodText()
+  std::string fit;   // of the row "lightfit", see MethodText()
+  std::string next;  // the frame that crawl is measured to; empty: none is
 };
 
 // One light: a table of it. More: one table over all lights, after one of each if `per_light`.

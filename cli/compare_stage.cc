@@ -9,6 +9,7 @@
 #include "optimizer/footprint_image.h"
 #include "optimizer/receivers.h"
 #include "render/readback_image.h"
+#include "render/true_lighting.h"
 
 namespace lightfit {
 namespace {
@@ -128,6 +129,21 @@ absl::StatusOr<CompareStage> MakeStage(const Readback& readback) {
   SetClipPlanes(nearest, furthest, &stage.view.camera);
   SetPlane(SurfacesOf(readback), &stage.view);
   return stage;
+}
+
+LitStage Lit(const CompareStage& stage, const Light& light) {
+  LitStage lit;
+  lit.stage = &stage;
+  lit.light = light;
+  lit.readback = stage.readback;
+  if (!stage.has_truth()) return lit;
+  lit.light.shadow_bit = 0;
+  for (const Lighting lighting : TrueLighting(*stage.caster, stage.readback_surfaces, light)) {
+    lit.shadow_bits.push_back(lighting == Lighting::kShadowed ? 1 : 0);
+  }
+  lit.readback.depth = stage.readback_depth;
+  lit.readback.shadow_bits = lit.shadow_bits;
+  return lit;
 }
 
 }  // namespace lightfit

@@ -2,9 +2,10 @@
 //
 // What a comparison of methods knows before any light is looked at.
 // In:   a RayCaster and the camera of the image to judge; or a read-back alone.
-// Out:  CompareStage: surfaces, depth, and what the published set-ups go by.
+// Out:  CompareStage: surfaces, depth, and what the published set-ups go by; LitStage.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -43,5 +44,16 @@ absl::StatusOr<CompareStage> MakeStage(const RayCaster& caster,
 
 // The buffers of `readback` must outlive the stage.
 absl::StatusOr<CompareStage> MakeStage(const Readback& readback);
+
+// A stage under one light. Refers to the stage.
+struct LitStage {
+  const CompareStage* stage = nullptr;
+  Light light;                        // with a caster its shadow bit is 0, whatever it was
+  std::vector<uint32_t> shadow_bits;  // with a caster: of the read-back
+  Readback readback;
+};
+
+// With a caster the read-back's shadow is cast.
+LitStage Lit(const CompareStage& stage, const Light& light);
 
 }  // namespace lightfit

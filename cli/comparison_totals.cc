@@ -37,6 +37,7 @@ MethodTotals TotalsOfRow(absl::Span<const LightComparison> lights, size_t row) {
   totals.name = lights.front().maps[row].name;
   PixelSum ideal, practical;
   double log_energy_ratio = 0.0;
+  std::vector<MapCrawl> crawls;
   for (const LightComparison& light : lights) {
     const ComparedMap& map = light.maps[row];
     const ComparedMap& lightfit = light.lightfit();
@@ -47,6 +48,7 @@ MethodTotals TotalsOfRow(absl::Span<const LightComparison> lights, size_t row) {
       ideal.Add(map.wrong->ideal, lightfit.wrong->ideal);
       practical.Add(map.wrong->practical, lightfit.wrong->practical);
     }
+    if (map.crawl.has_value() && lightfit.crawl.has_value()) crawls.push_back(*map.crawl);
     if (map.figures.has_value() && lightfit.figures.has_value() && map.figures->energy > 0.0 &&
         lightfit.figures->energy > 0.0) {
       ++totals.num_energy_lights;
@@ -55,6 +57,8 @@ MethodTotals TotalsOfRow(absl::Span<const LightComparison> lights, size_t row) {
   }
   totals.ideal = ideal.Result();
   totals.practical = practical.Result();
+  totals.crawl = PooledCrawl(crawls);
+  totals.num_crawl_lights = static_cast<int>(crawls.size());
   if (totals.num_energy_lights > 0) {
     totals.mean_energy_ratio = std::exp(log_energy_ratio / totals.num_energy_lights);
   }

@@ -46,6 +46,10 @@ struct MethodTotals {
   // Geometric mean of the ratios of energies over `num_energy_lights`; absent when that is 0.
   absl::optional<double> mean_energy_ratio;
   int num_energy_lights = 0;
+
+  // Over the lights for which both have it, PooledCrawl(); absent where there are none.
+  absl::optional<MapCrawl> crawl;
+  int num_crawl_lights = 0;
 };
 
 std::vector<MethodTotals> TotalsOf(absl::Span<const LightComparison> lights);

@@ -39,13 +39,14 @@ absl::StatusOr<Yardstick> MakeYardstick(const Readback& readback,
   return yardstick;
 }
 
+void AddNote(const std::string& note, ComparedMap* row) {
+  row->note += (row->note.empty() ? "" : "; ") + note;
+}
+
 // Sets the figures, or the note that says why there are none.
 void Measure(const Yardstick& yardstick, const Eigen::Matrix3d& map_from_ray, ComparedMap* row) {
-  const auto add_note = [row](const std::string& note) {
-    row->note += (row->note.empty() ? "" : "; ") + note;
-  };
   const Samples& samples = yardstick.samples;
-  if (samples.size() == 0) return add_note("no shadow edge in the read-back to measure by");
+  if (samples.size() == 0) return AddNote("no shadow edge in the read-back to measure by", row);
   const Eigen::Matrix3d map_from_normalized =
       map_from_ray * yardstick.normalized_from_ray.inverse();
   const Eigen::Vector3d axis = map_from_normalized.row(2);
@@ -56,96 +57,120 @@ void Measure(const Yardstick& yardstick, const Eigen::Matrix3d& map_from_ray, Co
     total_weight += samples.weight[i];
   }
   if (num_behind > 0) {
-    return add_note(
-        absl::StrFormat("no energy: w <= 0 at %d of %d samples, which the map cannot "
-                        "show",
+    return AddNote(
+        absl::StrFormat("no energy: w <= 0 at %d of %d samples, which the map cannot show",
                         num_behind,
-                        samples.size()));
+                        samples.size()),
+        row);
   }
   MapFigures figures;
   figures.footprint = ComputeFootprintStatistics(map_from_normalized, samples);
   figures.energy = 2.0 * total_weight * figures.footprint.rms * figures.footprint.rms;
   if (!std::isfinite(figures.energy) || !std::isfinite(figures.footprint.worst)) {
-    return add_note("no energy: the matrix is singular at the samples");
+    return AddNote("no energy: the matrix is singular at the samples", row);
   }
   row->figures = figures;
+}
+
+// How a method gets its matrix from what is known of one frame.
+using SetUp = std::function<absl::StatusOr<MethodMap>(const LitStage&)>;
+
+SetUp SetUpOf(Method method, MapSize map) {
+  return [method, map](const LitStage& frame) {
+    MethodInput input = frame.stage->view;
+    input.light = frame.light;
+    input.map = map;
+    return SetUpMap(method, input);
+  };
+}
+
+SetUp SetUpOf(const FitOptions& options, MapSize map) {
+  return [options, map](const LitStage& frame) -> absl::StatusOr<MethodMap> {
+    const absl::StatusOr<LightMatrix> fit = FitLight(frame.readback, frame.light, map, options);
+    if (!fit.ok()) return fit.status();
+    return MethodMap{fit->map_from_world, ""};
+  };
+}
+
+SetUp SetUpOf(const GivenMatrices& given) {
+  return [&given](const LitStage& frame) -> absl::StatusOr<MethodMap> {
+    const absl::StatusOr<Eigen::Matrix4d> matrix = given.Of(frame.light.name);
+    if (!matrix.ok()) return matrix.status();
+    return MethodMap{*matrix, ""};
+  };
 }
 
 // Fills in the rows of one light.
 class RowMaker {
  public:
-  RowMaker(const CompareStage& stage,
-           const Readback& readback,
-           const Light& light,
+  RowMaker(const LitStage& frame,
            const absl::StatusOr<Yardstick>& yardstick,
            const CompareOptions& options,
            LightComparison* comparison)
-      : stage_(stage),
-        readback_(readback),
-        light_(light),
-        yardstick_(yardstick),
-        options_(options),
-        comparison_(comparison) {}
-
-  void AddMethod(Method method) {
-    Begin(MethodName(method));
-    MethodInput input = stage_.view;
-    input.light = light_;
-    input.map = options_.map;
-    absl::StatusOr<MethodMap> map = SetUpMap(method, input);
-    if (!map.ok()) return Add(map.status(), "");
-    Add(map->map_from_world, map->note);
+      : frame_(frame), yardstick_(yardstick), options_(options), comparison_(comparison) {
+    if (options.next != nullptr) next_frame_ = Lit(options.next->stage, comparison->light);
   }
 
-  void AddFit(const char* name, const FitOptions& fit_options) {
-    Begin(name);
-    const absl::StatusOr<LightMatrix> fit = FitLight(readback_, light_, options_.map, fit_options);
-    if (!fit.ok()) return Add(fit.status(), "");
-    Add(fit->map_from_world, "");
-  }
-
-  void AddGiven(const GivenMatrices& given) {
-    Begin(given.name);
-    Add(given.Of(light_.name), "");
+  void Add(const std::string& name, const SetUp& set_up) {
+    if (options_.before_row) options_.before_row(name);
+    comparison_->maps.emplace_back();
+    ComparedMap& row = comparison_->maps.back();
+    row.name = name;
+    ShadowImage shadows;
+    row.status = AddPresent(set_up, &row, &shadows);
+    if (!row.status.ok()) return;
+    if (options_.next != nullptr) AddCrawl(set_up, shadows, &row);
+    if (options_.keep_images) row.image = std::move(shadows);
   }
 
  private:
-  void Begin(const std::string& name) {
-    if (options_.before_row) options_.before_row(name);
-    comparison_->maps.emplace_back();
-    comparison_->maps.back().name = name;
-  }
-
-  void Add(const absl::StatusOr<Eigen::Matrix4d>& map_from_world, const std::string& note) {
-    ComparedMap& row = comparison_->maps.back();
-    row.note = note;
-    row.status = map_from_world.status();
-    if (!row.status.ok()) return;
-    const absl::StatusOr<Eigen::Matrix3d> map_from_ray = MapFromRay(*map_from_world, light_);
-    row.status = map_from_ray.status();
-    if (!row.status.ok()) return;
-    row.map_from_world = *map_from_world;
-    if (yardstick_.ok()) Measure(*yardstick_, *map_from_ray, &row);
+  absl::Status AddPresent(const SetUp& set_up, ComparedMap* row, ShadowImage* shadows) {
+    const absl::StatusOr<MethodMap> map = set_up(frame_);
+    if (!map.ok()) return map.status();
+    row->note = map->note;
+    const Light& light = frame_.light;
+    const absl::StatusOr<Eigen::Matrix3d> map_from_ray = MapFromRay(map->map_from_world, light);
+    if (!map_from_ray.ok()) return map_from_ray.status();
+    row->map_from_world = map->map_from_world;
+    if (yardstick_.ok()) Measure(*yardstick_, *map_from_ray, row);
     const absl::StatusOr<double> foretold =
-        ForetellWrongShare(readback_, light_, *map_from_world, options_.map);
-    if (foretold.ok()) row.foretold = *foretold;
-    if (!stage_.has_truth()) return;
-    absl::StatusOr<ShadowImage> image = JudgeMatrix(*stage_.caster,
-                                                    stage_.screen,
+        ForetellWrongShare(frame_.readback, light, row->map_from_world, options_.map);
+    if (foretold.ok()) row->foretold = *foretold;
+    const CompareStage& stage = *frame_.stage;
+    if (!stage.has_truth()) return absl::OkStatus();
+    absl::StatusOr<ShadowImage> image = JudgeMatrix(*stage.caster,
+                                                    stage.screen,
                                                     comparison_->truth,
-                                                    light_,
-                                                    *map_from_world,
+                                                    light,
+                                                    row->map_from_world,
                                                     options_.map,
                                                     options_.bias);
-    row.status = image.status();
-    if (!row.status.ok()) return;
-    row.wrong = image->wrong;
-    if (options_.keep_images) row.image = *std::move(image);
+    if (!image.ok()) return image.status();
+    row->wrong = image->wrong;
+    *shadows = *std::move(image);
+    return absl::OkStatus();
   }
 
-  const CompareStage& stage_;
-  const Readback& readback_;
-  const Light& light_;
+  // Sets the crawl, or the note that says why there is none.
+  void AddCrawl(const SetUp& set_up, const ShadowImage& shadows, ComparedMap* row) {
+    if (options_.before_row) options_.before_row(row->name + ", next frame");
+    const absl::StatusOr<MethodMap> map = set_up(next_frame_);
+    const absl::StatusOr<MapCrawl> crawl =
+        map.ok() ? MeasureMapCrawl({frame_, comparison_->truth, row->map_from_world, shadows},
+                                   *options_.next,
+                                   next_frame_,
+                                   map->map_from_world,
+                                   options_.map,
+                                   options_.bias)
+                 : map.status();
+    if (!crawl.ok()) {
+      return AddNote("no crawl, in the next frame: " + std::string(crawl.status().message()), row);
+    }
+    row->crawl = *crawl;
+  }
+
+  const LitStage& frame_;
+  LitStage next_frame_;
   const absl::StatusOr<Yardstick>& yardstick_;
   const CompareOptions& options_;
   LightComparison* comparison_;
@@ -179,36 +204,29 @@ std::vector<std::string> RowNames(const std::vector<GivenMatrices>& given) {
 }
 
 LightComparison CompareMaps(const CompareStage& stage,
-                            const Light& original_light,
+                            const Light& light,
                             const CompareOptions& options) {
-  if (absl::Status status = ValidateLight(original_light); !status.ok()) {
-    return FailedRows(original_light, status, options);
+  if (absl::Status status = ValidateLight(light); !status.ok()) {
+    return FailedRows(light, status, options);
   }
   LightComparison comparison;
-  comparison.light = original_light;
-  Light light = original_light;
-  Readback readback = stage.readback;
-  std::vector<uint32_t> shadow_bits;
+  comparison.light = light;
   if (stage.has_truth()) {
     comparison.truth = TrueLighting(*stage.caster, stage.screen, light);
     comparison.lighting = CountLighting(comparison.truth);
-    light.shadow_bit = 0;
-    for (const Lighting lighting : TrueLighting(*stage.caster, stage.readback_surfaces, light)) {
-      shadow_bits.push_back(lighting == Lighting::kShadowed ? 1 : 0);
-    }
-    readback.depth = stage.readback_depth;
-    readback.shadow_bits = shadow_bits;
   }
+  const LitStage frame = Lit(stage, light);
   const absl::StatusOr<Yardstick> yardstick =
-      MakeYardstick(readback, light, FitOptions::AsPublished().samples);
+      MakeYardstick(frame.readback, frame.light, FitOptions::AsPublished().samples);
   if (yardstick.ok()) comparison.samples = yardstick->samples.counts;
 
-  RowMaker rows(stage, readback, light, yardstick, options, &comparison);
-  for (const Method method : AllMethods()) rows.AddMethod(method);
-  rows.AddFit(kAsPublishedName, PublishedOptions(options.fit));
-  rows.AddFit(kLineName, LineOptions(options.fit));
-  for (const GivenMatrices& given : options.given) rows.AddGiven(given);
-  rows.AddFit(kLightfitName, options.fit);
+  RowMaker rows(frame, yardstick, options, &comparison);
+  const MapSize map = options.map;
+  for (const Method method : AllMethods()) rows.Add(MethodName(method), SetUpOf(method, map));
+  rows.Add(kAsPublishedName, SetUpOf(PublishedOptions(options.fit), map));
+  rows.Add(kLineName, SetUpOf(LineOptions(options.fit), map));
+  for (const GivenMatrices& given : options.given) rows.Add(given.name, SetUpOf(given));
+  rows.Add(kLightfitName, SetUpOf(options.fit, map));
   if (!options.keep_images) comparison.truth.clear();
   return comparison;
 }

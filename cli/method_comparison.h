@@ -2,7 +2,8 @@
 //
 // Every way to set up a shadow map, side by side on one light: the rows of `lightfit compare`.
 // In:   a CompareStage (a scene that a camera sees, or a read-back alone), a light, options.
-// Out:  LightComparison: of each method the matrix, its energy, footprints and wrong pixels.
+// Out:  LightComparison: of each method the matrix, its energy, footprints, wrong pixels
+//       and crawl.
 //
 // Rows, in this order: the published set-ups of methods/ by their names; "as-published", Chong and
 // Gortler's Algorithm 1 to the letter; "line", the same in normalised rays; matrices given from
@@ -18,6 +19,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/types/optional.h"
+#include "cli/compare_crawl.h"
 #include "cli/compare_stage.h"
 #include "geometry/clip.h"
 #include "geometry/light.h"
@@ -40,7 +42,12 @@ struct CompareOptions {
   std::vector<GivenMatrices> given;
   bool keep_images = false;
 
-  // Called before each row with its name; for a progress bar.
+  // Where crawl is measured to, by setting up every method there as well; null: nowhere. Must
+  // outlive the comparison.
+  const NextFrame* next = nullptr;
+
+  // Called before each row with its name, and with "NAME, next frame" before its crawl; for a
+  // progress bar.
   std::function<void(const std::string&)> before_row;
 };
 
@@ -60,6 +67,7 @@ struct ComparedMap {
   absl::optional<MapFigures> figures;  // absent: no samples, or w <= 0 at some of them
   absl::optional<WrongPixels> wrong;   // absent without truth
   absl::optional<double> foretold;     // share of wrong pixels foretold from the read-back
+  absl::optional<MapCrawl> crawl;      // to CompareOptions::next; absent: `note` says why
   ShadowImage image;                   // CompareOptions::keep_images
 };
 

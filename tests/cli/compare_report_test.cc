@@ -116,6 +116,34 @@ TEST(CompareReport, SaysTheSameWordsOnce) {
   EXPECT_THAT(CompareReportText(Heading(), lights, false), HasSubstr("\npsm, tsm: no way\n"));
 }
 
+TEST(CompareReport, CrawlHasColumnsOnlyWhereItIsMeasured) {
+  std::vector<LightComparison> lights = {ThreeLights()[0]};
+  EXPECT_THAT(CompareReportText(Heading(), lights, false), Not(HasSubstr("crawl")));
+  MapCrawl crawl;
+  crawl.points.num_points = 900;
+  crawl.points.phase_drift_texels = 0.25;
+  crawl.flicker = Flicker{200, 3, 4};
+  lights[0].maps[0].crawl = crawl;
+  CompareHeading heading = Heading();
+  heading.next = "frame 7 of cameras.json";
+  const std::string text = CompareReportText(heading, lights, false);
+  EXPECT_THAT(text, HasSubstr("crawl: to the next frame, frame 7 of cameras.json\n"));
+  EXPECT_THAT(text, HasSubstr(" texels  pixels  % flips\n"));
+  EXPECT_THAT(text, HasSubstr("   0.250       -     1.50\n"));  // no edge in view
+  EXPECT_THAT(text, HasSubstr("       -       -        -\n"));  // lightfit has none
+  EXPECT_THAT(text, HasSubstr("Flips: "));
+
+  lights.push_back(lights[0]);
+  lights[0].maps[1].crawl = lights[1].maps[1].crawl = crawl;
+  EXPECT_THAT(CompareReportText(heading, lights, false), HasSubstr("   0.250       -     1.50"));
+
+  heading.screen_width = 0;
+  const std::string readback = CompareReportText(heading, lights, false);
+  EXPECT_THAT(readback, HasSubstr(" texels  pixels"));
+  EXPECT_THAT(readback, Not(HasSubstr("lips")));
+  EXPECT_THAT(CompareCsv(lights), HasSubstr(",0.25,0,0,200,3,4,"));
+}
+
 // Splits a line at the commas outside quotes.
 std::vector<std::string> Fields(const std::string& line) {
   std::vector<std::string> fields(1);
