@@ -10,6 +10,7 @@
 #include "cli/exit_code.h"
 #include "cli/fit_inputs.h"
 #include "cli/fit_report.h"
+#include "cli/fit_summary.h"
 #include "cli/output_file.h"
 #include "cli/picture.h"
 #include "cli/progress.h"
@@ -150,7 +151,7 @@ int Fail(ExitCode code, const absl::Status& status) {
 std::function<int()> DeclareFit(CLI::App* app) {
   const auto flags = std::make_shared<FitFlags>();
   DeclareFitFlags(app, flags.get());
-  return [flags] { return RunFit(*flags); };
+  return [flags] { return flags->summary_paths.empty() ? RunFit(*flags) : RunFitSummary(*flags); };
 }
 
 int RunFit(const FitFlags& flags) {

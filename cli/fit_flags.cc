@@ -12,6 +12,8 @@
 namespace lightfit {
 namespace {
 
+constexpr char kInputGroup[] = "Input";
+constexpr char kCameraGroup[] = "Camera";
 constexpr char kMethodGroup[] = "Method";
 constexpr int kMaxMapSize = 65536;  // texels along one side
 
@@ -20,6 +22,7 @@ constexpr char kExamples[] =
     "  lightfit fit 0001.exr --lights scene.json --json matrices.json --picture gain.png\n"
     "  lightfit fit 0001.exr --light sun=sun:-0.3,0.2,-1 --map 2048x1024 --clip direct3d\n"
     "  lightfit fit 0001.exr --lights scene.json --only key --as-published\n"
+    "  lightfit fit --summary part1.summary part2.summary --json shot.json\n"
     "\n"
     "Units: positions and depth in world units, maps in texels, images in pixels.\n"
     "The read-back holds a depth channel Z and one channel shadow.LIGHT per light, above 0.5 "
@@ -54,49 +57,33 @@ CLI::Option* AddChoice(CLI::App* app,
 }
 
 void DeclareInput(CLI::App* app, FitFlags* flags) {
-  const std::string group = "Input";
+  const std::string group = kInputGroup;
   app->add_option("readback", flags->readback_path, "OpenEXR file with depth and shadow channels")
-      ->required()
       ->type_name("READBACK.exr");
-  DeclareLightFlags(app, &flags->lights, group);
-  app->add_option("--only", flags->only, "Fit this light only (may be repeated)")
-      ->type_name("LIGHT")
-      ->expected(1)
-      ->take_all()
+  app->add_option("--summary",
+                  flags->summary_paths,
+                  "Instead of a read-back: fit one map per light to the sum of these files of "
+                  "lightfit summarize")
+      ->type_name("FILE")
       ->group(group);
+  DeclareLightFlags(app, &flags->lights, group);
+  DeclareOnlyFlag(app, group, flags);
   DeclareReadbackFlags(app, group, flags);
 }
 
-void DeclareCamera(CLI::App* app, FitFlags* flags) {
-  const std::string group = "Camera";
-  app->add_option("--camera", flags->camera_path, "JSON file with the camera, or a scene file")
-      ->type_name("FILE")
-      ->group(group);
-  app->add_option("--frame", flags->frame, "Which frame of the --camera scene file, from 0 [0]")
-      ->type_name("N")
-      ->check(CLI::NonNegativeNumber)
-      ->group(group);
-  DeclareCameraExrFlags(app, group, &flags->camera_exr);
-}
-
-void DeclareMap(CLI::App* app, FitFlags* flags) {
-  const std::string group = "Map";
-  app->add_option_function<std::string>(
-         "--map",
-         [flags](const std::string& text) {
-           const absl::StatusOr<MapSize> map = ParseMapSize(text);
-           if (!map.ok()) throw CLI::ValidationError("--map", std::string(map.status().message()));
-           flags->map = *map;
-         },
-         "Size of the shadow map in texels [1024x1024]")
-      ->type_name("WIDTHxHEIGHT")
-      ->group(group);
-  AddChoice(app,
-            "--clip",
-            ClipWords(),
-            &flags->clip,
-            "Clip space of clipFromWorld in the JSON file [vulkan]")
-      ->group(group);
+// What `fit` asks of a read-back beside its channels.
+void CheckNeedsOfFit(const CLI::App& app, const FitFlags& flags) {
+  if (flags.summary_paths.empty()) return;
+  if (app.count("--picture") > 0) {
+    throw CLI::ValidationError("--picture",
+                               "needs the pixels of a read-back, and a summary has none; draw one "
+                               "frame with lightfit fit READBACK.exr --picture");
+  }
+  if (app.count("--as-published") > 0) {
+    throw CLI::ValidationError("--as-published",
+                               "goes through the samples one by one, and a summary has their sums "
+                               "only; --search line runs on those");
+  }
 }
 
 void DeclareMethod(CLI::App* app, FitFlags* flags) {
@@ -124,6 +111,14 @@ void DeclareOutput(CLI::App* app, FitFlags* flags) {
 
 }  // namespace
 
+void DeclareOnlyFlag(CLI::App* app, const std::string& group, FitFlags* flags) {
+  app->add_option("--only", flags->only, "This light only (may be repeated)")
+      ->type_name("LIGHT")
+      ->expected(1)
+      ->take_all()
+      ->group(group);
+}
+
 void DeclareReadbackFlags(CLI::App* app, const std::string& group, FitFlags* flags) {
   AddChoice(app,
             "--depth-kind",
@@ -144,6 +139,17 @@ void DeclareReadbackFlags(CLI::App* app, const std::string& group, FitFlags* fla
                   "UINT channel that holds all shadows, light l in bit l")
       ->type_name("CHANNEL")
       ->group(group);
+}
+
+void DeclareCameraFlags(CLI::App* app, const std::string& group, FitFlags* flags) {
+  app->add_option("--camera", flags->camera_path, "JSON file with the camera, or a scene file")
+      ->type_name("FILE")
+      ->group(group);
+  app->add_option("--frame", flags->frame, "Which frame of the --camera scene file, from 0 [0]")
+      ->type_name("N")
+      ->check(CLI::NonNegativeNumber)
+      ->group(group);
+  DeclareCameraExrFlags(app, group, &flags->camera_exr);
 }
 
 void DeclareCameraExrFlags(CLI::App* app, const std::string& group, CameraExrOptions* camera) {
@@ -186,19 +192,7 @@ void DeclareMethodFlags(CLI::App* app, FitOptions* options) {
             &options->affine,
             "How the map is laid around what it covers [parallelogram]")
       ->group(kMethodGroup);
-  AddChoice(app,
-            "--metric",
-            MetricWords(),
-            &options->metric,
-            "What is summed over the shadow edges; -edge: across the edge only [l1-edge]")
-      ->group(kMethodGroup);
-  AddChoice(app,
-            "--cover",
-            CoverWords(),
-            &options->cover,
-            "What the map has room for: shadowed surfaces, or all receivers in view; look-ups "
-            "outside find light [shadowed]")
-      ->group(kMethodGroup);
+  DeclareSummingFlags(app, options);
   app->add_option("--margin-percent",
                   options->margin_percent,
                   "The map reaches this much beyond what it covers on every side [1]")
@@ -213,13 +207,76 @@ void DeclareMethodFlags(CLI::App* app, FitOptions* options) {
       ->group(kMethodGroup);
 }
 
+void DeclareSummingFlags(CLI::App* app, FitOptions* options) {
+  AddChoice(app,
+            "--metric",
+            MetricWords(),
+            &options->metric,
+            "What is summed over the shadow edges; -edge: across the edge only [l1-edge]")
+      ->group(kMethodGroup);
+  AddChoice(app,
+            "--cover",
+            CoverWords(),
+            &options->cover,
+            "What the map has room for: shadowed surfaces, or all receivers in view; look-ups "
+            "outside find light [shadowed]")
+      ->group(kMethodGroup);
+}
+
+void DeclareMapFlags(CLI::App* app, const std::string& group, FitFlags* flags) {
+  app->add_option_function<std::string>(
+         "--map",
+         [flags](const std::string& text) {
+           const absl::StatusOr<MapSize> map = ParseMapSize(text);
+           if (!map.ok()) throw CLI::ValidationError("--map", std::string(map.status().message()));
+           flags->map = *map;
+         },
+         "Size of the shadow map in texels [1024x1024]")
+      ->type_name("WIDTHxHEIGHT")
+      ->group(group);
+  AddChoice(app,
+            "--clip",
+            ClipWords(),
+            &flags->clip,
+            "Clip space of clipFromWorld in the JSON file [vulkan]")
+      ->group(group);
+}
+
 void DeclareFitFlags(CLI::App* app, FitFlags* flags) {
   DeclareInput(app, flags);
-  DeclareCamera(app, flags);
-  DeclareMap(app, flags);
+  DeclareCameraFlags(app, kCameraGroup, flags);
+  DeclareMapFlags(app, "Map", flags);
   DeclareMethod(app, flags);
   DeclareOutput(app, flags);
   app->footer(kExamples);
+  app->callback([app, flags] {
+    flags->has_metric = app->count("--metric") > 0;
+    flags->has_cover = app->count("--cover") > 0;
+    CheckSource(*app, *flags, {kInputGroup, kCameraGroup});
+    CheckNeedsOfFit(*app, *flags);
+  });
+}
+
+void CheckSource(const CLI::App& app,
+                 const FitFlags& flags,
+                 const std::vector<std::string>& readback_groups) {
+  if (flags.readback_path.empty() == flags.summary_paths.empty()) {
+    throw CLI::ValidationError(app.get_name(),
+                               "want a read-back or --summary, one of the two; lightfit summarize "
+                               "adds a read-back to summaries");
+  }
+  if (flags.summary_paths.empty()) return;
+  for (const CLI::Option* option : app.get_options()) {
+    const std::string name = option->get_name();
+    if (option->count() == 0 || name == "--summary" || name == "--only") continue;
+    if (std::find(readback_groups.begin(), readback_groups.end(), option->get_group()) ==
+        readback_groups.end()) {
+      continue;
+    }
+    throw CLI::ValidationError(name,
+                               "is about a read-back; leave it out with --summary, whose files "
+                               "hold the lights and what their samples came to");
+  }
 }
 
 absl::StatusOr<MapSize> ParseMapSize(const std::string& text) {

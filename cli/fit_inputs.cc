@@ -11,10 +11,9 @@
 #include "optimizer/readback.h"
 
 namespace lightfit {
-namespace {
 
-absl::StatusOr<std::vector<Light>> Chosen(const std::vector<Light>& lights,
-                                          const std::vector<std::string>& only) {
+absl::StatusOr<std::vector<Light>> ChooseLights(const std::vector<Light>& lights,
+                                                const std::vector<std::string>& only) {
   if (only.empty()) return lights;
   std::vector<std::string> names;
   names.reserve(lights.size());
@@ -35,14 +34,14 @@ absl::StatusOr<std::vector<Light>> Chosen(const std::vector<Light>& lights,
   return chosen;
 }
 
-absl::StatusOr<std::vector<Light>> LightsOf(const FitFlags& flags) {
+absl::StatusOr<std::vector<Light>> ReadFitLights(const FitFlags& flags) {
   const absl::StatusOr<std::vector<Light>> lights = ReadLights(flags.lights);
   if (!lights.ok()) return lights.status();
   if (lights->empty()) {
     return absl::InvalidArgumentError(
         "no lights: want --lights FILE, or --light NAME=sun:X,Y,Z for one light");
   }
-  return Chosen(*lights, flags.only);
+  return ChooseLights(*lights, flags.only);
 }
 
 absl::StatusOr<ReadbackExrOptions> ReadbackOptionsOf(const FitFlags& flags) {
@@ -64,11 +63,9 @@ absl::StatusOr<ReadbackExrOptions> ReadbackOptionsOf(const FitFlags& flags) {
   return options;
 }
 
-}  // namespace
-
 absl::StatusOr<FitInputs> ReadFitInputs(const FitFlags& flags) {
   FitInputs inputs;
-  absl::StatusOr<std::vector<Light>> lights = LightsOf(flags);
+  absl::StatusOr<std::vector<Light>> lights = ReadFitLights(flags);
   if (!lights.ok()) return lights.status();
   inputs.lights = *std::move(lights);
   const absl::StatusOr<ReadbackExrOptions> options = ReadbackOptionsOf(flags);

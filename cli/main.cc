@@ -13,6 +13,7 @@
 #include "cli/exit_code.h"
 #include "cli/fit.h"
 #include "cli/render.h"
+#include "cli/summarize.h"
 #include "cli/verb.h"
 
 namespace lightfit {
@@ -20,10 +21,13 @@ namespace {
 
 constexpr Verb kVerbs[] = {
     {"compare", "Compare every method on a scene or a read-back", DeclareCompare},
-    {"fit", "Fit the light matrices of one read-back (an EXR file)", DeclareFit},
+    {"fit", "Fit the light matrices of one read-back (an EXR file), or of summaries", DeclareFit},
     {"render",
      "Make a read-back with exact shadows from a scene (.glb, .obj, .ply)",
      DeclareRender},
+    {"summarize",
+     "Sum up read-backs in small files, for one fit to all (fit --summary)",
+     DeclareSummarize},
 };
 
 constexpr char kFooter[] =

@@ -1,0 +1,108 @@
+#include "cli/summary_inputs.h"
+
+#include <algorithm>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
+#include "cli/choices.h"
+#include "cli/fit_inputs.h"
+#include "io/text_file.h"
+
+namespace lightfit {
+
+absl::StatusOr<SummarySet> ReadSummary(const std::string& path,
+                                       const std::vector<std::string>& only) {
+  absl::StatusOr<SummarySet> set = ReadSummaryFile(path);
+  if (!set.ok()) return set.status();
+  std::vector<Light> lights;
+  for (const LightSummary& light : set->lights) lights.push_back(light.total.light);
+  if (absl::Status status = ChooseLights(lights, only).status(); !status.ok()) {
+    return InFile(path, status);
+  }
+  const auto is_dropped = [&only](const LightSummary& light) {
+    return !only.empty() && std::find(only.begin(), only.end(), light.name()) == only.end();
+  };
+  set->lights.erase(std::remove_if(set->lights.begin(), set->lights.end(), is_dropped),
+                    set->lights.end());
+  return set;
+}
+
+absl::StatusOr<SummarySet> ReadSummaries(const std::vector<std::string>& paths,
+                                         const std::vector<std::string>& only) {
+  absl::StatusOr<SummarySet> sum = ReadSummary(paths.front(), only);
+  for (size_t i = 1; i < paths.size() && sum.ok(); ++i) {
+    const absl::StatusOr<SummarySet> set = ReadSummary(paths[i], only);
+    if (!set.ok()) return set.status();
+    if (absl::Status status = AddToSet(*set, &*sum); !status.ok()) return InFile(paths[i], status);
+  }
+  return sum;
+}
+
+absl::Status CheckHeld(const FitFlags& flags, const FitOptions& held) {
+  const auto refuse = [&held](const char* flag, const std::string& given) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("%s %s: the summaries hold sums for --metric %s and --cover %s; leave it "
+                        "out, or summarise the frames again with it",
+                        flag,
+                        given,
+                        WordFor(MetricWords(), held.metric),
+                        WordFor(CoverWords(), held.cover)));
+  };
+  const FitOptions& options = flags.options;
+  if (flags.has_metric && options.metric != held.metric) {
+    return refuse("--metric", WordFor(MetricWords(), options.metric));
+  }
+  if (flags.has_cover && options.cover != held.cover) {
+    return refuse("--cover", WordFor(CoverWords(), options.cover));
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<FitOptions> OptionsFor(const FitFlags& flags, const FitOptions& held) {
+  if (absl::Status status = CheckHeld(flags, held); !status.ok()) return status;
+  FitOptions options = flags.options;
+  options.samples = held.samples;
+  options.samples.min_samples = flags.options.samples.min_samples;
+  options.metric = held.metric;
+  options.along_edge_share = held.along_edge_share;
+  options.cover = held.cover;
+  options.compute_statistics = false;  // percentiles need the samples
+  if (absl::Status status = ValidateFitOptions(options); !status.ok()) return status;
+  return options;
+}
+
+absl::StatusOr<Summary> SummaryOf(const LightSummary& light) {
+  if (light.total.num_frames == 0) {
+    return absl::FailedPreconditionError(MissingFramesText(light));
+  }
+  return SummaryOfTotal(light.total);
+}
+
+std::string MissingFramesText(const LightSummary& light) {
+  if (light.num_frames_without == 0) return "";
+  return absl::StrFormat("light \"%s\": nothing of it in %d of %d frames, such as %s",
+                         light.name(),
+                         light.num_frames_without,
+                         light.num_frames(),
+                         light.failure.message());
+}
+
+std::string SourceText(std::vector<std::string> paths) {
+  std::sort(paths.begin(), paths.end());
+  return absl::StrJoin(paths, ", ");
+}
+
+std::string TitleText(const std::vector<std::string>& paths) {
+  return paths.size() == 1 ? paths.front() : absl::StrCat(paths.size(), " summaries");
+}
+
+void ClearReadbackFigures(v1::ReadbackInfo* readback,
+                          google::protobuf::RepeatedPtrField<v1::LightResult>* lights) {
+  readback->clear_camera();  // each frame had its own
+  for (v1::LightResult& light : *lights) {
+    if (light.footprint().rms() == 0.0) light.clear_footprint();  // it needs the samples
+  }
+}
+
+}  // namespace lightfit

@@ -1,0 +1,598 @@
+// Summary files: what was written comes back to the last bit, sums do not depend on order and
+// grouping, and nothing that is wrong with a file goes unnoticed.
+
+#include "io/summary_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iostream>
+#include <limits>
+#include <random>
+
+#include "absl/strings/str_cat.h"
+#include "io/lights_file.h"
+#include "io/readback_exr.h"
+#include "io/result_json.h"
+#include "io/summary_proto.h"
+#include "optimizer/fit.h"
+#include "tests/io/testing.h"
+#include "tests/testing/matchers.h"
+
+namespace lightfit {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using testing::IsOk;
+using testing::StatusIs;
+
+constexpr char kWriter[] = "lightfit test";
+constexpr MapSize kMap = {1024, 512};
+
+struct Example {
+  std::vector<Light> lights;
+  ReadbackFile file;
+};
+
+const Example& Yard() {
+  static const Example& example = *new Example([] {
+    Example yard;
+    yard.lights = *ReadLightsFile(testing::RepositoryFile("examples/yard_180/scene.json"));
+    yard.file =
+        *ReadReadbackExr(testing::RepositoryFile("examples/yard_180/0001.exr"), yard.lights);
+    return yard;
+  }());
+  return example;
+}
+
+// The yard with a bar of it gone, another one for each number: frames that see different things.
+ReadbackFile FrameOfYard(int number) {
+  ReadbackFile file = Yard().file;
+  const int width = file.camera.width;
+  const int first = 11 * number % width;
+  for (int y = 0; y < file.camera.height; ++y) {
+    for (int x = first; x < std::min(first + 40, width); ++x) {
+      file.depth[static_cast<size_t>(y) * width + x] = std::numeric_limits<float>::infinity();
+    }
+  }
+  return file;
+}
+
+SummarySet SetOf(const ReadbackFile& file,
+                 const std::string& name,
+                 const FitOptions& options = {}) {
+  std::vector<LightSummary> lights;
+  for (const Light& light : Yard().lights) {
+    lights.push_back(SummaryOfFrame(light, Summarize(file.View(), light, options), name, options));
+  }
+  return MakeSummarySet(options, std::move(lights));
+}
+
+std::vector<SummarySet> FramesOfYard(int count) {
+  std::vector<SummarySet> sets;
+  for (int i = 0; i < count; ++i) sets.push_back(SetOf(FrameOfYard(i), absl::StrCat(i, ".exr")));
+  return sets;
+}
+
+std::string BytesOf(const SummarySet& set) {
+  const absl::StatusOr<std::string> bytes = SerializeSummarySet(set, kWriter);
+  EXPECT_THAT(bytes, IsOk());
+  return bytes.ok() ? *bytes : "";
+}
+
+// One frame's; what the tests below change.
+const std::string& YardBytes() {
+  static const std::string& bytes = *new std::string(BytesOf(SetOf(Yard().file, "yard.exr")));
+  return bytes;
+}
+
+v1::SummaryFile YardProto() {
+  v1::SummaryFile proto;
+  EXPECT_TRUE(proto.ParseFromString(YardBytes().substr(20)));
+  return proto;
+}
+
+std::string Uint32Bytes(uint32_t value) {
+  std::string bytes;
+  for (int i = 0; i < 4; ++i) bytes += static_cast<char>(value >> 8 * i);
+  return bytes;
+}
+
+// A file around any payload, with length and checksum as they should be.
+std::string FileAround(const std::string& payload) {
+  const uLong crc = crc32(0, reinterpret_cast<const Bytef*>(payload.data()), payload.size());
+  return absl::StrCat(YardBytes().substr(0, 12),
+                      Uint32Bytes(static_cast<uint32_t>(payload.size())),
+                      Uint32Bytes(static_cast<uint32_t>(crc)),
+                      payload);
+}
+
+// Whatever a file says that is read without complaint: a fit is a matrix of numbers or a status.
+// Returns whether it is a matrix.
+bool FitsOrSaysWhy(const LightSummary& light, const FitOptions& options) {
+  const absl::StatusOr<Summary> summary = SummaryOfTotal(light.total);
+  LightFit fit;
+  fit.light = light.total.light;
+  fit.matrix = summary.ok() ? Fit(*summary, fit.light, kMap, options)
+                            : absl::StatusOr<LightMatrix>(summary.status());
+  const bool has_matrix = fit.matrix.ok();
+  if (has_matrix) {
+    EXPECT_TRUE(fit.matrix->map_from_world.allFinite());
+    EXPECT_TRUE(std::isfinite(fit.matrix->energy)) << fit.matrix->energy;
+  } else {
+    EXPECT_FALSE(fit.matrix.status().message().empty());
+  }
+  FitReport report;
+  report.options = options;
+  report.map = kMap;
+  report.lights = {fit};
+  EXPECT_THAT(FitResultToJson(FitResultToProto(report)), IsOk());
+  return has_matrix;
+}
+
+TEST(SummaryFile, ReadsBackWhatWasWritten) {
+  const testing::TemporaryFolder folder;
+  const SummarySet set = SetOf(Yard().file, "yard.exr");
+  ASSERT_THAT(WriteSummaryFile(folder.File("yard.summary"), set, kWriter), IsOk());
+  EXPECT_EQ(folder.num_files(), 1u);
+  const absl::StatusOr<SummarySet> read = ReadSummaryFile(folder.File("yard.summary"));
+  ASSERT_THAT(read, IsOk());
+  ASSERT_EQ(read->lights.size(), 3u);
+  for (size_t i = 0; i < 3; ++i) {
+    const SummaryTotal &a = set.lights[i].total, &b = read->lights[i].total;
+    EXPECT_EQ(a.light.name, b.light.name);
+    EXPECT_EQ(a.light.position, b.light.position);
+    EXPECT_EQ(a.light.direction, b.light.direction);
+    EXPECT_EQ(b.num_frames, 1);
+    const absl::StatusOr<Summary> before = SummaryOfTotal(a), after = SummaryOfTotal(b);
+    ASSERT_THAT(before, IsOk());
+    ASSERT_THAT(after, IsOk());
+    EXPECT_EQ(before->tensor.entries(), after->tensor.entries());
+    EXPECT_EQ(before->metric.across_edge, after->metric.across_edge);
+    EXPECT_EQ(before->total_weight, after->total_weight);
+    EXPECT_EQ(before->footprint_sum, after->footprint_sum);
+    EXPECT_EQ(before->cover.hull, after->cover.hull);
+    EXPECT_EQ(before->cover.depth.near, after->cover.depth.near);
+    EXPECT_EQ(before->cover.depth.far, after->cover.depth.far);
+    EXPECT_EQ(before->cover.mean_ray, after->cover.mean_ray);
+    const absl::StatusOr<LightMatrix> fit_before = Fit(*before, a.light, kMap, set.options);
+    const absl::StatusOr<LightMatrix> fit_after = Fit(*after, b.light, kMap, read->options);
+    ASSERT_THAT(fit_before, IsOk());
+    ASSERT_THAT(fit_after, IsOk());
+    EXPECT_EQ(fit_before->map_from_world, fit_after->map_from_world);
+    EXPECT_EQ(fit_before->energy, fit_after->energy);
+  }
+  EXPECT_EQ(BytesOf(*read), testing::Bytes(folder.File("yard.summary")));
+}
+
+// The tensor alone is 36 sums of three doubles.
+TEST(SummaryFile, TakesAboutAKilobytePerLight) {
+  for (const LightSummary& light : SetOf(Yard().file, "yard.exr").lights) {
+    std::cout << light.name() << ": " << SummaryBytes(light) << " bytes\n";
+    EXPECT_GT(SummaryBytes(light), 500);
+    EXPECT_LT(SummaryBytes(light), 3000);
+  }
+}
+
+TEST(SummaryFile, EveryMetricAndCoverComesBack) {
+  for (const Metric metric :
+       {Metric::kL2, Metric::kL2AcrossEdge, Metric::kL1, Metric::kL1AcrossEdge}) {
+    for (const Cover cover : {Cover::kReceivers, Cover::kShadowed}) {
+      FitOptions options;
+      options.metric = metric;
+      options.cover = cover;
+      const std::string bytes = BytesOf(SetOf(Yard().file, "yard.exr", options));
+      const absl::StatusOr<SummarySet> read = ParseSummarySet(bytes);
+      ASSERT_THAT(read, IsOk());
+      EXPECT_EQ(read->options.metric, metric);
+      EXPECT_EQ(read->options.cover, cover);
+      for (const LightSummary& light : read->lights) {
+        EXPECT_TRUE(FitsOrSaysWhy(light, read->options)) << light.name();
+      }
+      EXPECT_EQ(BytesOf(*read), bytes);
+    }
+  }
+}
+
+// Half of the sets go through a file on the way, as on a farm.
+TEST(SummaryFile, SameBytesInAnyOrderAndGrouping) {
+  const std::vector<SummarySet> frames = FramesOfYard(9);
+  std::string expected;
+  for (uint32_t seed = testing::kSeed; seed < testing::kSeed + 8; ++seed) {
+    std::cout << "seed " << seed << "\n";
+    std::mt19937 random(seed);
+    std::vector<SummarySet> sets = frames;
+    while (sets.size() > 1) {
+      std::shuffle(sets.begin(), sets.end(), random);
+      SummarySet last = sets.back();
+      sets.pop_back();
+      if (random() % 2 == 0) last = *ParseSummarySet(BytesOf(last));
+      ASSERT_THAT(AddToSet(last, &sets[random() % sets.size()]), IsOk());
+    }
+    const std::string bytes = BytesOf(sets.front());
+    if (expected.empty()) expected = bytes;
+    EXPECT_TRUE(bytes == expected);
+  }
+}
+
+// The way over files is the library's own sum.
+TEST(SummaryFile, SumIsThatOfMergeSummaries) {
+  SummarySet sum = SetOf(FrameOfYard(0), "0.exr");
+  for (int i = 1; i < 4; ++i) {
+    ASSERT_THAT(AddToSet(*ParseSummarySet(BytesOf(SetOf(FrameOfYard(i), "i.exr"))), &sum), IsOk());
+  }
+  for (const LightSummary& light : sum.lights) {
+    const auto same = [&light](const Light& other) { return other.name == light.name(); };
+    const Light& original = *std::find_if(Yard().lights.begin(), Yard().lights.end(), same);
+    std::vector<Summary> summaries;
+    for (int i = 0; i < 4; ++i) summaries.push_back(*Summarize(FrameOfYard(i).View(), original));
+    const absl::StatusOr<Summary> merged = MergeSummaries(summaries, original);
+    const absl::StatusOr<Summary> added = SummaryOfTotal(light.total);
+    ASSERT_THAT(merged, IsOk());
+    ASSERT_THAT(added, IsOk());
+    EXPECT_EQ(merged->tensor.entries(), added->tensor.entries());
+    EXPECT_EQ(merged->footprint_sum, added->footprint_sum);
+    EXPECT_EQ(merged->cover.hull, added->cover.hull);
+    EXPECT_EQ(light.num_frames(), 4);
+  }
+}
+
+TEST(SummaryFile, FramesWithoutALightAreCountedAndTheFirstMessageKept) {
+  const std::vector<std::string> names = {"0007.exr", "0003.exr", "0005.exr"};
+  std::string expected;
+  for (const std::vector<int>& order : {std::vector<int>{0, 1, 2, 3}, {3, 2, 1, 0}, {1, 3, 0, 2}}) {
+    absl::optional<SummarySet> sum;
+    for (const int i : order) {
+      SummarySet set = SetOf(FrameOfYard(i), "whole.exr");
+      if (i < 3) {
+        const Light light = set.lights[1].total.light;
+        const absl::Status status =
+            absl::NotFoundError(absl::StrCat("light \"", light.name, "\": no channel"));
+        set.lights[1] = SummaryOfFrame(light, status, names[i], set.options);
+      }
+      set = *ParseSummarySet(BytesOf(set));
+      if (!sum.has_value()) {
+        sum = set;
+      } else {
+        ASSERT_THAT(AddToSet(set, &*sum), IsOk());
+      }
+    }
+    EXPECT_EQ(sum->lights[1].total.num_frames, 1);
+    EXPECT_EQ(sum->lights[1].num_frames_without, 3);
+    EXPECT_EQ(sum->lights[1].failure, absl::NotFoundError("0003.exr: no channel"));
+    EXPECT_EQ(sum->lights[0].total.num_frames, 4);
+    if (expected.empty()) expected = BytesOf(*sum);
+    EXPECT_TRUE(BytesOf(*sum) == expected);
+  }
+}
+
+// A frame in which all is lit has no samples and no failure.
+TEST(SummaryFile, FramesWithoutShadowAddNothingButTheirCount) {
+  ReadbackFile lit = Yard().file;
+  std::fill(lit.shadow_bits.begin(), lit.shadow_bits.end(), 0);
+  const SummarySet nothing = *ParseSummarySet(BytesOf(SetOf(lit, "lit.exr")));
+  EXPECT_FALSE(FitsOrSaysWhy(nothing.lights[0], nothing.options));
+  SummarySet sum = nothing;
+  ASSERT_THAT(AddToSet(SetOf(Yard().file, "yard.exr"), &sum), IsOk());
+  const SummarySet read = *ParseSummarySet(BytesOf(sum));
+  for (const LightSummary& light : read.lights) {
+    EXPECT_TRUE(FitsOrSaysWhy(light, read.options));
+    EXPECT_EQ(light.total.num_frames, 2);
+    EXPECT_EQ(light.num_frames_without, 0);
+  }
+}
+
+TEST(SummaryFile, LongMessagesAreCutAtOnce) {
+  const absl::Status status = absl::InternalError(std::string(5000, 'x'));
+  const LightSummary light = SummaryOfFrame(Yard().lights[0], status, "0.exr", {});
+  EXPECT_EQ(light.failure.message().size(), kMaxFailureBytes);
+  const absl::StatusOr<SummarySet> read = ParseSummarySet(BytesOf(MakeSummarySet({}, {light})));
+  ASSERT_THAT(read, IsOk());
+  EXPECT_EQ(read->lights[0].failure, light.failure);
+}
+
+TEST(SummaryFile, OnlyLikeThingsAdd) {
+  const SummarySet yard = SetOf(Yard().file, "yard.exr");
+  const auto refused = [&yard](const std::function<void(SummarySet&)>& change,
+                               const std::vector<std::string>& words) {
+    SummarySet other = yard, sum = yard;
+    change(other);
+    const absl::Status status = AddToSet(other, &sum);
+    EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument);
+    EXPECT_TRUE(testing::HasAll(status.message(), words));
+    EXPECT_TRUE(BytesOf(sum) == BytesOf(yard));
+  };
+  refused([](SummarySet& set) { set.lights[0].total.light.position.x() += 1e-9; },
+          {"light", yard.lights[0].name(), "position"});
+  refused([](SummarySet& set) { set.lights[2].total.light.direction.x() += 1e-9; },
+          {yard.lights[2].name(), "direction"});
+  refused([](SummarySet& set) { set.lights[1].total.light.name = "lantern"; },
+          {"lantern", yard.lights[1].name(), "--only"});
+  refused([](SummarySet& set) { set.lights.pop_back(); }, {"--only"});
+  refused([](SummarySet& set) { set.options.metric = Metric::kL2; },
+          {"options.metric", "METRIC_L2 here", "METRIC_L1_ACROSS_EDGE"});
+  refused([](SummarySet& set) { set.options.cover = Cover::kReceivers; },
+          {"options.cover", "COVER_RECEIVERS", "COVER_SHADOWED"});
+  refused([](SummarySet& set) { set.options.samples.min_cos_eye = 0.25; },
+          {"options.samples.min_cos_eye", "0.25", "0.01"});
+  refused([](SummarySet& set) { set.options.along_edge_share = 0.5; }, {"along_edge_share"});
+  refused([](SummarySet& set) { set.lights[1].weighed_in = Eigen::Matrix4d::Identity(); },
+          {"in a given map here", "best map"});
+}
+
+TEST(SummaryFile, WeighingsMustBeTheSameMap) {
+  SummarySet sum = SetOf(Yard().file, "yard.exr");
+  for (LightSummary& light : sum.lights) light.weighed_in = Eigen::Matrix4d::Identity();
+  SummarySet other = *ParseSummarySet(BytesOf(sum));
+  EXPECT_THAT(AddToSet(other, &sum), IsOk());
+  other.lights[0].weighed_in->coeffRef(0, 3) = 7.0;
+  EXPECT_THAT(AddToSet(other, &sum),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("in another")));
+}
+
+TEST(SummaryFile, HeadersThatAreNotOursSaySo) {
+  const std::string& whole = YardBytes();
+  const auto refused = [](const std::string& bytes, const std::string& words) {
+    EXPECT_THAT(ParseSummarySet(bytes),
+                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(words)));
+  };
+  refused("", "is empty");
+  refused("this is text, and long enough for a header", "is no summary file");
+  refused(whole.substr(0, 10), "cut short");
+  refused(whole.substr(0, 100), "has 100 bytes, and should have");
+  refused(whole + "x", "and should have");
+  std::string bytes = whole;
+  bytes[8] = 3;
+  refused(bytes, "has format version 3, this lightfit reads 1: update lightfit");
+  bytes[8] = 0;
+  refused(bytes, "has format version 0, this lightfit reads 1: summarise");
+  bytes = whole;
+  bytes[500] ^= 1;
+  refused(bytes, "checksum");
+  // What a transfer in text mode makes of it.
+  bytes = whole;
+  bytes.erase(bytes.find('\r'), 1);
+  refused(bytes, "is no summary file");
+}
+
+TEST(SummaryFile, MissingFilesAndFoldersAreNamed) {
+  const testing::TemporaryFolder folder;
+  EXPECT_THAT(ReadSummaryFile(folder.File("none.summary")),
+              StatusIs(absl::StatusCode::kNotFound, HasSubstr("none.summary")));
+  EXPECT_THAT(ReadSummaryFile(folder.File("")),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("folder")));
+  EXPECT_THAT(ReadSummaryFile(folder.Write("text.summary", "text")),
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       AllOf(HasSubstr("text.summary"), HasSubstr("no summary"))));
+}
+
+TEST(SummaryFile, IsKnownByItsFirstBytesOrItsName) {
+  const testing::TemporaryFolder folder;
+  EXPECT_TRUE(IsSummaryFile(folder.Write("renamed.dat", YardBytes())));
+  EXPECT_TRUE(IsSummaryFile(folder.Write("empty.summary", "")));
+  EXPECT_FALSE(IsSummaryFile(folder.Write("text.exr", "text")));
+  EXPECT_FALSE(IsSummaryFile(folder.File("none.exr")));
+  EXPECT_FALSE(IsSummaryFile(testing::RepositoryFile("examples/yard_180/0001.exr")));
+}
+
+// Fields of a later version may mean what we do not know.
+TEST(SummaryFile, UnknownFieldsAreRefusedWhereverTheyAre) {
+  const std::vector<std::function<google::protobuf::Message*(v1::SummaryFile&)>> places = {
+      [](v1::SummaryFile& p) { return &p; },
+      [](v1::SummaryFile& p) { return p.mutable_options()->mutable_samples(); },
+      [](v1::SummaryFile& p) { return p.mutable_lights(2); },
+      [](v1::SummaryFile& p) { return p.mutable_lights(0)->mutable_light(); },
+      [](v1::SummaryFile& p) { return p.mutable_lights(1)->mutable_total()->mutable_tensor(35); },
+      [](v1::SummaryFile& p) { return p.mutable_lights(1)->mutable_total()->mutable_cover(); }};
+  for (const auto& place : places) {
+    v1::SummaryFile proto = YardProto();
+    google::protobuf::Message* message = place(proto);
+    message->GetReflection()->MutableUnknownFields(message)->AddVarint(999, 1);
+    EXPECT_THAT(
+        ParseSummarySet(FileAround(proto.SerializeAsString())),
+        StatusIs(absl::StatusCode::kInvalidArgument,
+                 AllOf(HasSubstr("field 999"), HasSubstr(kWriter), HasSubstr("update lightfit"))));
+  }
+}
+
+// One change each to a good file, and the word of the field that is to be named.
+TEST(SummaryFile, ValuesThatNoSumHasAreNamed) {
+  const auto refused = [](const std::function<void(v1::SummaryFile&, v1::LightSummary&)>& change,
+                          const std::string& words) {
+    v1::SummaryFile proto = YardProto();
+    change(proto, *proto.mutable_lights(0));
+    EXPECT_THAT(ParseSummarySet(FileAround(proto.SerializeAsString())),
+                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(words)));
+  };
+  using File = v1::SummaryFile;
+  using L = v1::LightSummary;
+  EXPECT_THAT(ParseSummarySet(FileAround(YardProto().SerializeAsString())), IsOk());
+  const double kNan = std::numeric_limits<double>::quiet_NaN();
+  const double kInfinity = std::numeric_limits<double>::infinity();
+  for (const double bad : {kNan, kInfinity, -kInfinity, 1e200, 0.0}) {
+    refused([=](File&, L& l) { l.mutable_total()->mutable_tensor(7)->set_parts(0, bad); },
+            "tensor[7]");
+    refused([=](File&, L& l) { l.mutable_total()->mutable_total_weight()->add_parts(bad); },
+            "total_weight");
+    refused([=](File&, L& l) { l.mutable_total()->mutable_footprint_sum()->add_parts(bad); },
+            "footprint_sum");
+    refused([=](File&,
+                L& l) { l.mutable_total()->mutable_cover()->mutable_mean_ray(1)->add_parts(bad); },
+            "cover.mean_ray[1]");
+    refused([=](File&, L& l) { l.mutable_total()->mutable_cover()->set_near(bad); }, "cover.near");
+  }
+  // Parts that overlap, or in the wrong order, say the same number in other bytes.
+  refused(
+      [](File&, L& l) {
+        v1::ExactSum& sum = *l.mutable_total()->mutable_total_weight();
+        const double part = sum.parts(0);
+        sum.clear_parts();
+        sum.add_parts(0.5 * part);
+        sum.add_parts(0.5 * part);
+      },
+      "each part the nearest");
+  refused(
+      [](File&, L& l) {
+        for (int i = 0; i < 100; ++i) l.mutable_total()->mutable_total_weight()->add_parts(1.0);
+      },
+      "at most 40");
+  refused([](File&, L& l) { l.mutable_total()->mutable_tensor()->RemoveLast(); },
+          "35 sums, want 36");
+  refused([](File&, L& l) { l.mutable_total()->clear_tensor(); }, "tensor has 0 sums");
+  refused([](File&, L& l) { l.mutable_total()->clear_total_weight(); }, "total_weight = 0");
+  refused([](File&, L& l) { l.mutable_total()->clear_footprint_sum(); }, "footprint_sum = 0");
+  refused([](File&, L& l) { l.mutable_total()->mutable_counts()->set_used(-1); }, "counts = -1");
+  refused([](File&, L& l) { l.mutable_total()->mutable_counts()->set_used(1LL << 60); }, "counts");
+  refused([](File&, L& l) { l.mutable_total()->mutable_counts()->set_candidates(1); },
+          "counts.used");
+  refused([](File&, L& l) { l.mutable_total()->set_num_frames(0); }, "num_frames = 0");
+  refused([](File&, L& l) { l.mutable_total()->set_num_frames(2); }, "want the same frames");
+  refused([](File&, L& l) { l.set_num_frames_without(1); }, "failure");
+  refused([](File&, L& l) { l.mutable_failure()->set_code(9); }, "failure");
+  refused(
+      [](File&, L& l) {
+        l.set_num_frames_without(1);
+        l.mutable_failure()->set_code(99);
+      },
+      "failure.code = 99");
+  refused([](File&, L& l) { l.mutable_weighed_in()->add_m(1.0); }, "weighed_in");
+  refused([](File&, L& l) { l.mutable_total()->mutable_cover()->add_hull(1.0); }, "cover.hull has");
+  refused([](File&, L& l) { l.mutable_total()->mutable_cover()->set_hull(4, 0.9); },
+          "cover.hull[1]");
+  refused([](File&, L& l) { l.mutable_total()->mutable_cover()->set_hull(0, NAN); },
+          "cover.hull[0]");
+  refused(
+      [](File&, L& l) {
+        for (int i = 0; i < 3 * 5000; ++i) l.mutable_total()->mutable_cover()->add_hull(1.0);
+      },
+      "at most 4096 rays");
+  // The first two rays the other way round: no longer counter-clockwise.
+  refused(
+      [](File&, L& l) {
+        auto* hull = l.mutable_total()->mutable_cover()->mutable_hull();
+        for (int i = 0; i < 3; ++i) hull->SwapElements(i, i + 3);
+      },
+      "no convex hull");
+  refused(
+      [](File&, L& l) {
+        v1::CoveredRays& cover = *l.mutable_total()->mutable_cover();
+        cover.set_near(cover.far() + 1.0);
+      },
+      "cover.near");
+  refused([](File&, L& l) { l.mutable_light()->clear_name(); }, "name is empty");
+  refused([](File&, L& l) { l.mutable_light()->add_position(1.0); }, "position");
+  refused([](File& f, L&) { f.clear_lights(); }, "lights: none");
+  refused([](File& f, L&) { f.mutable_lights()->SwapElements(0, 1); }, "order");
+  refused([](File& f, L& l) { f.mutable_lights(1)->CopyFrom(l); }, "taken");
+  refused([](File& f, L&) { f.clear_options(); }, "not set");
+  refused([](File& f, L&) { f.mutable_options()->clear_min_w(); }, "not set");
+  refused([](File& f, L&) { f.mutable_options()->set_metric(static_cast<v1::Metric>(8)); },
+          "metric");
+  refused([](File& f, L&) { f.mutable_options()->set_metric(v1::METRIC_L2); }, "footprint_sum");
+}
+
+TEST(SummaryFile, WhatCouldNotBeReadIsNotWritten) {
+  const testing::TemporaryFolder folder;
+  SummarySet set = SetOf(Yard().file, "yard.exr");
+  set.lights[0].total.depth.far = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(WriteSummaryFile(folder.File("a.summary"), set, kWriter),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("a.summary")));
+  EXPECT_EQ(folder.num_files(), 0u);
+}
+
+TEST(DamagedSummaryFile, EveryCutIsAnError) {
+  const std::string& whole = YardBytes();
+  for (size_t length = 0; length < whole.size(); ++length) {
+    const absl::StatusOr<SummarySet> set = ParseSummarySet(whole.substr(0, length));
+    ASSERT_EQ(set.status().code(), absl::StatusCode::kInvalidArgument) << length;
+    ASSERT_FALSE(set.status().message().empty());
+  }
+}
+
+std::string Damaged(std::string bytes, size_t first, std::mt19937* random) {
+  const int count = 1 + static_cast<int>((*random)() % 4);
+  for (int i = 0; i < count; ++i) {
+    const size_t at = first + (*random)() % (bytes.size() - first);
+    // A single bit, or any byte.
+    bytes[at] =
+        static_cast<char>((*random)() % 2 == 0 ? bytes[at] ^ 1 << (*random)() % 8 : (*random)());
+  }
+  return bytes;
+}
+
+TEST(DamagedSummaryFile, RandomDamageIsAnError) {
+  std::mt19937 random(testing::kSeed);
+  std::cout << "seed " << testing::kSeed << "\n";
+  for (int i = 0; i < 1000; ++i) {
+    const std::string bytes = Damaged(YardBytes(), 0, &random);
+    if (bytes == YardBytes()) continue;
+    EXPECT_EQ(ParseSummarySet(bytes).status().code(), absl::StatusCode::kInvalidArgument);
+  }
+}
+
+// Damage that its maker has put the right checksum on: an error, or numbers that can be worked on.
+TEST(DamagedSummaryFile, DamageWithARightChecksumIsAnErrorOrUsable) {
+  std::mt19937 random(testing::kSeed);
+  std::cout << "seed " << testing::kSeed << "\n";
+  const std::string payload = YardBytes().substr(20);
+  int errors = 0, usable = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const absl::StatusOr<SummarySet> set =
+        ParseSummarySet(FileAround(Damaged(payload, 0, &random)));
+    if (set.ok()) {
+      // Fits are slow beside the rest: a tenth of them.
+      if (usable++ % 10 == 0) FitsOrSaysWhy(set->lights[random() % 3], set->options);
+    } else {
+      EXPECT_FALSE(set.status().message().empty());
+      ++errors;
+    }
+  }
+  std::cout << errors << " errors, " << usable << " usable\n";
+  EXPECT_GT(errors, 500);
+  EXPECT_GT(usable, 0);
+}
+
+// The worst numbers that pass the checks one by one.
+TEST(DamagedSummaryFile, WildNumbersAreErrorsOrUsable) {
+  std::mt19937 random(testing::kSeed);
+  std::cout << "seed " << testing::kSeed << "\n";
+  int errors = 0, usable = 0;
+  for (int i = 0; i < 120; ++i) {
+    v1::SummaryFile proto = YardProto();
+    const double values[] = {1e100, -1e100, 1e-300, -1.0, 5e-324, 1e30, -1e-30};
+    for (v1::LightSummary& light : *proto.mutable_lights()) {
+      v1::SummaryTotal& total = *light.mutable_total();
+      const double value = values[random() % std::size(values)];
+      v1::ExactSum* sums[] = {
+          total.mutable_tensor(static_cast<int>(random() % 36)),
+          total.mutable_total_weight(),
+          total.mutable_footprint_sum(),
+          total.mutable_cover()->mutable_mean_ray(static_cast<int>(random() % 3))};
+      v1::ExactSum& sum = *sums[random() % std::size(sums)];
+      sum.clear_parts();
+      sum.add_parts(value);
+      if (random() % 4 == 0) total.mutable_cover()->set_far(1e100);
+      if (random() % 4 == 0 && !light.light().position().empty()) {
+        light.mutable_light()->set_position(0, 1e300 * value);
+      }
+    }
+    const absl::StatusOr<SummarySet> set = ParseSummarySet(FileAround(proto.SerializeAsString()));
+    if (set.ok()) {
+      FitsOrSaysWhy(set->lights[random() % 3], set->options);
+      ++usable;
+    } else {
+      ++errors;
+    }
+  }
+  std::cout << errors << " errors, " << usable << " usable\n";
+  EXPECT_GT(errors, 10);
+  EXPECT_GT(usable, 10);
+}
+
+}  // namespace
+}  // namespace lightfit
