@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/allocate.h"
 #include "cli/compare.h"
 #include "cli/exit_code.h"
 #include "cli/fit.h"
@@ -20,6 +21,9 @@ namespace lightfit {
 namespace {
 
 constexpr Verb kVerbs[] = {
+    {"allocate",
+     "Find the sizes of shadow maps: split a budget of texels, or keep a tolerance",
+     DeclareAllocate},
     {"compare", "Compare every method on a scene or a read-back", DeclareCompare},
     {"fit", "Fit the light matrices of one read-back (an EXR file), or of summaries", DeclareFit},
     {"render",
