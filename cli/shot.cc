@@ -1,0 +1,81 @@
+#include "cli/shot.h"
+
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "cli/canvas.h"
+#include "cli/exit_code.h"
+#include "cli/shot_plot.h"
+#include "cli/shot_report.h"
+#include "cli/shot_run.h"
+#include "cli/text.h"
+
+namespace lightfit {
+namespace {
+
+int Fail(ExitCode code, const absl::Status& status) {
+  PrintError(status.message());
+  return code;
+}
+
+// Before the work, so that nobody waits for what is there.
+void PrintResuming(const ShotContext& context) {
+  const ShotJob& job = context.job;
+  int num_done = 0;
+  for (size_t i = 0; i < job.frames.size(); ++i) num_done += context.IsComplete(i) ? 1 : 0;
+  if (num_done == 0) return;
+  const bool needs_shot = job.Has(ShotMode::kPerShot) && !context.HasShot();
+  std::printf("resuming: %d of %zu frames are done%s\n",
+              num_done,
+              job.frames.size(),
+              needs_shot ? ", but for the map of the whole shot" : "");
+  std::fflush(stdout);
+}
+
+Typeface FindTypeface() {
+  Typeface typeface = Typeface::Find();
+  if (!typeface.found()) {
+    PrintWarning(
+        "no typeface found, so the plot has no text; install fonts-dejavu-core or set "
+        "LIGHTFIT_FONT to a .ttf file");
+  }
+  return typeface;
+}
+
+}  // namespace
+
+std::function<int()> DeclareShot(CLI::App* app) {
+  const auto flags = std::make_shared<ShotFlags>();
+  DeclareShotFlags(app, flags.get());
+  return [flags] { return RunShotVerb(*flags); };
+}
+
+int RunShotVerb(const ShotFlags& flags) {
+  absl::Status status = ValidateTrackerOptions(TrackerOptionsOf(flags));
+  if (!status.ok()) return Fail(kExitUsage, status);
+  const absl::StatusOr<ShotJob> job = MakeShotJob(flags);
+  if (!job.ok()) return Fail(kExitBadInput, job.status());
+  status = MakeShotFolders(*job);
+  if (!status.ok()) return Fail(kExitBadInput, status);
+
+  ShotContext context(*job);
+  if (!job->quiet) PrintResuming(context);
+  status = RunShot(&context);
+  if (status.ok()) {
+    status = WritePng(DrawShotPlot(*job, context.rows, FindTypeface()), context.paths.Plot());
+  }
+  if (!status.ok()) return Fail(kExitBadInput, status);
+  if (!job->quiet) {
+    std::fputs(ShotReportText(context).c_str(), stdout);
+    std::fflush(stdout);
+  }
+  for (const std::string& note : context.notes) PrintWarning(note);
+  const std::vector<std::string> errors = ShotErrors(context);
+  for (const std::string& error : errors) PrintError(error);
+  return errors.empty() ? kExitOk : kExitIncomplete;
+}
+
+}  // namespace lightfit
