@@ -42,6 +42,7 @@ check_layers() {
   layer proto proto lightfit
   layer io geometry optimizer proto lightfit io
   layer cli geometry optimizer methods render proto lightfit io cli
+  layer examples geometry optimizer render
   layer bench geometry optimizer methods render proto lightfit io cli bench tests
   local hits
   hits=$(grep -rnE '^#include ["<](OpenImageIO|google/protobuf|CLI|grpc)' geometry optimizer || true)
