@@ -82,6 +82,10 @@ absl::StatusOr<AffineFit> FitAffine(const AffineProblem& problem,
   AffineFit fit;
   Parallelogram shape;
   if (problem.affine == Affine::kMinEnergyParallelogram) {
+    // Sums of samples are positive; those of a damaged summary need not be.
+    if (!(metric(0, 0) > 0.0) || !metric.allFinite()) {
+      return absl::InvalidArgumentError("the energy is not positive: no samples sum to this");
+    }
     const EnclosingParallelogram best =
         MinEnergyParallelogram(polygon, metric, inner_width, inner_height);
     shape = best.shape;

@@ -117,8 +117,7 @@ bool Polishes(const FitOptions& options) {
   return options.search == Search::kGlobal || options.search == Search::kRotationLineSearchRefined;
 }
 
-// A fit from a summary alone is done once for a whole shot, and must not depend on how the frames
-// came together: to the end of what double precision tells.
+// SearchInputs::to_the_end.
 void PolishExactly(const Summary& summary,
                    MapSize map,
                    const FitOptions& options,
@@ -231,7 +230,7 @@ absl::StatusOr<SearchOutcome> SearchAxis(const SearchInputs& inputs,
   if (is_l1 && inputs.samples != nullptr) return SearchL1(inputs, map, options);
   absl::StatusOr<SearchOutcome> outcome = SearchSquares(inputs, inputs.summary, map, options);
   if (!outcome.ok()) return outcome;
-  if (inputs.samples == nullptr && Polishes(options)) {
+  if (inputs.to_the_end && Polishes(options)) {
     PolishExactly(inputs.summary, map, options, &*outcome);
   }
   if (!is_l1) return outcome;

@@ -25,6 +25,10 @@ struct SearchInputs {
   const Summary& summary;
   const Samples* samples = nullptr;
   const Receivers* receivers = nullptr;
+
+  // Whether to polish to the end of what double precision tells (Polish::kExact), so that the
+  // result does not depend on how a summary came about. From a summary alone.
+  bool to_the_end = false;
 };
 
 struct SearchOutcome {

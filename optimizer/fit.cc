@@ -137,7 +137,8 @@ absl::StatusOr<LightMatrix> Fit(const Summary& summary,
         "and "
         "fit with the same FitOptions");
   }
-  return FitInputs({light, summary}, map, options);
+  // Done once for a whole shot, however its frames came together.
+  return FitInputs({light, summary, nullptr, nullptr, /*to_the_end=*/true}, map, options);
 }
 
 }  // namespace lightfit

@@ -9,6 +9,7 @@
 #include "absl/strings/str_format.h"
 #include "optimizer/axis_search.h"
 #include "optimizer/fit.h"
+#include "optimizer/prepared_light.h"
 
 namespace lightfit {
 
@@ -118,7 +119,8 @@ absl::StatusOr<Summary> SummarizeForAnyAspect(const Readback& readback,
   if (!summary.ok() || !IsL1(options.metric) || summary->counts.used == 0) return summary;
   absl::StatusOr<MapShapes> shapes = FindMapShapes(*summary, light, options);
   for (int round = 0; round < options.reweighting_rounds && shapes.ok(); ++round) {
-    const absl::StatusOr<LightMatrix> best = Fit(*summary, light, shapes->BestMap(), options);
+    const absl::StatusOr<LightMatrix> best =
+        FitInputs({light, *summary}, shapes->BestMap(), options);
     if (!best.ok()) break;
     absl::StatusOr<Summary> next = SummarizeInMap(readback, light, best->map_from_world, options);
     if (!next.ok()) break;

@@ -260,7 +260,7 @@ absl::StatusOr<ToleranceMap> MeetTolerance(const Summary& summary,
         "squared footprints (Metric::kL2, --metric l2); for other tolerances give the read-back");
   }
   const auto try_size = [&](MapSize map) -> absl::StatusOr<ToleranceMap> {
-    absl::StatusOr<LightMatrix> matrix = Fit(summary, light, map, options);
+    absl::StatusOr<LightMatrix> matrix = FitInputs({light, summary}, map, options);
     if (!matrix.ok()) return matrix.status();
     ToleranceMap trial;
     trial.reached_px = matrix->footprint.rms * tolerance.image_scale;

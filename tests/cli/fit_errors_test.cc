@@ -43,7 +43,7 @@ TEST(CommandLine, HelpAndVersionSucceed) {
 TEST(CommandLine, WrongUsageIsExitCodeOne) {
   ExpectError(RunLightfit({}), 1, "");
   ExpectError(RunLightfit({"fti"}), 1, "");
-  ExpectError(RunLightfit({"fit"}), 1, "readback");
+  ExpectError(RunLightfit({"fit"}), 1, "read-back");
   ExpectError(FitYard({"--no-such-option"}), 1, "--no-such-option");
   ExpectError(FitYard({"--map"}), 1, "--map");
   ExpectError(FitYard({"--margin-percent", "-1"}), 1, "--margin-percent");

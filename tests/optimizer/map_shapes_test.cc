@@ -12,6 +12,7 @@
 #include "optimizer/axis_search.h"
 #include "optimizer/fit.h"
 #include "optimizer/map_sizes.h"
+#include "optimizer/prepared_light.h"
 #include "tests/testing/matchers.h"
 #include "tests/testing/random_cases.h"
 #include "tests/testing/test_scene.h"
@@ -39,7 +40,7 @@ void ForEachSummary(int num_scenes, const Check& check) {
         FitOptions options;
         options.metric = metric;
         const absl::StatusOr<Summary> summary = Summarize(scene.View(), light, options);
-        if (!summary.ok() || !Fit(*summary, light, {512, 512}, options).ok()) continue;
+        if (!summary.ok() || !FitInputs({light, *summary}, {512, 512}, options).ok()) continue;
         check(*summary, light, options);
         ++num_checked;
       }
@@ -52,7 +53,7 @@ double FittedEnergy(const Summary& summary,
                     const Light& light,
                     MapSize map,
                     const FitOptions& options) {
-  const absl::StatusOr<LightMatrix> fit = Fit(summary, light, map, options);
+  const absl::StatusOr<LightMatrix> fit = FitInputs({light, summary}, map, options);
   EXPECT_THAT(fit, IsOk());
   return fit.ok() ? fit->energy : 0.0;
 }
@@ -121,7 +122,7 @@ TEST(MapShapes, BestAspectIsThatOfADenseScan) {
   ForEachSummary(3, [&](const Summary& summary, const Light& light, const FitOptions& options) {
     const absl::StatusOr<MapShapes> shapes = FindMapShapes(summary, light, options);
     ASSERT_TRUE(shapes.ok()) << shapes.status();
-    constexpr int kSteps = 64;  // to four octaves
+    constexpr int kSteps = 32;  // to four octaves
     double least = std::numeric_limits<double>::infinity();
     for (int i = 0; i <= kSteps; ++i) {
       const double aspect = std::exp2(4.0 * i / kSteps);
@@ -178,7 +179,7 @@ TEST(SummarizeForAnyAspect, LowersTheBoundToWhatFitsOfTheReadBackReach) {
     for (const Light& light : scene.lights) {
       const FitOptions options;
       const absl::StatusOr<Summary> square = Summarize(scene.View(), light, options);
-      if (!square.ok() || !Fit(*square, light, {512, 512}, options).ok()) continue;
+      if (!square.ok() || !FitInputs({light, *square}, {512, 512}, options).ok()) continue;
       const absl::StatusOr<Summary> summary = SummarizeForAnyAspect(scene.View(), light, options);
       ASSERT_TRUE(summary.ok()) << summary.status();
       const absl::StatusOr<MapShapes> before = FindMapShapes(*square, light, options);

@@ -12,6 +12,7 @@
 #include "optimizer/evaluate.h"
 #include "optimizer/fit.h"
 #include "optimizer/footprint.h"
+#include "optimizer/prepared_light.h"
 #include "optimizer/receivers.h"
 #include "optimizer/samples.h"
 #include "tests/testing/matchers.h"
@@ -132,7 +133,7 @@ TEST(MeetTolerance, NoSmallerMapOfAllSizesHolds) {
         for (int height = 64; height <= width; height += 64) {
           const MapSize map = {width, height};
           if (TexelsOf(map) >= least) continue;
-          const absl::StatusOr<LightMatrix> fit = Fit(*summary, light, map, options);
+          const absl::StatusOr<LightMatrix> fit = FitInputs({light, *summary}, map, options);
           if (fit.ok() && fit->footprint.rms <= tolerance.limit_px) least = TexelsOf(map);
         }
       }
