@@ -22,7 +22,7 @@ constexpr Affine kFitters[] = {Affine::kMinAreaRectangle, Affine::kMinEnergyPara
 
 TEST(PolishAxis, NeverWorseThanItsStart) {
   for (const Affine affine : kFitters) {
-    for (const FitStation& station : FitStations(5, affine)) {
+    for (const FitStation& station : FitStations(2, affine)) {
       const AffineFit start = station.Start();
       for (const Polish polish : {Polish::kQuick, Polish::kThorough, Polish::kExact}) {
         const RefineResult result =
@@ -60,7 +60,7 @@ TEST(PolishAxis, LeavesNoBetterNeighbour) {
 TEST(PolishAxis, ExactlyEndsInTheSameOptimum) {
   Random random(171);
   double widest = 0.0;
-  for (const FitStation& station : FitStations(4, Affine::kMinEnergyParallelogram)) {
+  for (const FitStation& station : FitStations(2, Affine::kMinEnergyParallelogram)) {
     SummaryEvaluator evaluator(station.summary, station.problem, kMinW);
     const AffineFit thorough =
         PolishAxis(

@@ -189,9 +189,9 @@ TEST(Tracker, LooksForABetterMapEveryNthFrameOnly) {
 // The rule by hand: the fresh fit's squared median against that of what is kept.
 TEST(Tracker, ReplacesBelowTheThreshold) {
   int num_replaced = 0, num_kept = 0;
-  for (uint64_t seed = 1; seed <= 4; ++seed) {
+  for (uint64_t seed = 1; seed <= 2; ++seed) {
     const Walk walk(seed, 12, 0.5);
-    for (const double threshold : {0.0, 0.5, 0.8, 0.95}) {
+    for (const double threshold : {0.0, 0.8, 0.95}) {
       TrackerOptions options;
       options.replace_below = threshold;
       options.update_every_frames = 1;
