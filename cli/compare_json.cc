@@ -2,6 +2,7 @@
 
 #include "cli/comparison_totals.h"
 #include "io/camera_file.h"
+#include "io/crawl_proto.h"
 #include "io/lights_file.h"
 #include "io/matrix_proto.h"
 #include "io/options_proto.h"
@@ -21,13 +22,8 @@ v1::WrongPixels WrongPixelsToProto(const WrongPixels& wrong) {
   return proto;
 }
 
-v1::Crawl CrawlToProto(const MapCrawl& crawl) {
-  v1::Crawl proto;
-  proto.set_num_points(crawl.points.num_points);
-  proto.set_phase_drift_texels(crawl.points.phase_drift_texels);
-  proto.set_moved_share(crawl.points.moved_share);
-  proto.set_num_edge_points(crawl.points.num_edge_points);
-  proto.set_edge_crawl_px(crawl.points.edge_crawl_px);
+v1::Crawl MapCrawlToProto(const MapCrawl& crawl) {
+  v1::Crawl proto = CrawlToProto(crawl.points);
   if (!crawl.flicker.has_value()) return proto;
   proto.mutable_flicker()->set_judged(crawl.flicker->judged);
   proto.mutable_flicker()->set_flips_ideal(crawl.flicker->flips_ideal);
@@ -59,7 +55,7 @@ v1::MethodComparison MethodToProto(const ComparedMap& map, const ComparedMap& li
   if (map.wrong.has_value()) *proto.mutable_wrong() = WrongPixelsToProto(*map.wrong);
   if (map.foretold.has_value()) proto.set_foretold_share(*map.foretold);
   SetRatios(map, lightfit, &proto);
-  if (map.crawl.has_value()) *proto.mutable_crawl() = CrawlToProto(*map.crawl);
+  if (map.crawl.has_value()) *proto.mutable_crawl() = MapCrawlToProto(*map.crawl);
   return proto;
 }
 
@@ -99,7 +95,7 @@ v1::MethodTotals TotalsToProto(const MethodTotals& totals) {
   if (totals.practical.has_value()) *proto.mutable_practical() = PixelsToProto(*totals.practical);
   if (totals.mean_energy_ratio.has_value()) proto.set_mean_energy_ratio(*totals.mean_energy_ratio);
   proto.set_num_energy_lights(totals.num_energy_lights);
-  if (totals.crawl.has_value()) *proto.mutable_crawl() = CrawlToProto(*totals.crawl);
+  if (totals.crawl.has_value()) *proto.mutable_crawl() = MapCrawlToProto(*totals.crawl);
   proto.set_num_crawl_lights(totals.num_crawl_lights);
   return proto;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <mutex>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -179,8 +180,8 @@ class FramePipeline {
     FinishMode(ShotMode::kPerFrame, &FrameWork::per_frame, work);
     FinishMode(ShotMode::kTracked, &FrameWork::tracked, work);
     work->before.reset();
-    if (MustReadFrame(context_, work->frame))
-      context_.Step(absl::StrCat("frame ", job_.frames[work->frame].name));
+    if (!MustReadFrame(context_, work->frame)) return;
+    context_.Step(absl::StrCat("frame ", job_.frames[work->frame].name));
   }
 
   void FinishMode(ShotMode mode, FrameWork::Mode FrameWork::*part, FrameWork* work) {

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "io/crawl_proto.h"
 #include "io/shot_proto.h"
 
 namespace lightfit {
@@ -42,14 +43,6 @@ FitReport ReportOf(const ShotJob& job,
     report.lights.push_back(std::move(fit));
   }
   return report;
-}
-
-Crawl CrawlOf(const v1::FrameCrawl& proto) {
-  return {proto.points(),
-          proto.phase_drift_texels(),
-          proto.moved_share(),
-          proto.edge_points(),
-          proto.edge_crawl_px()};
 }
 
 // Only a tracked matrix says what was done to it; that of a shot never moves after its first frame.
@@ -98,7 +91,7 @@ v1::FitResult ShotResultToProto(const ShotJob& job,
       proto.set_action(TrackerActionToProto(fits[light]->tracked.action));
       proto.set_frames_kept(fits[light]->tracked.frames_kept);
     }
-    if (fits[light]->crawl) *proto.mutable_crawl() = FrameCrawlToProto(*fits[light]->crawl);
+    if (fits[light]->crawl) *proto.mutable_crawl() = CrawlToProto(*fits[light]->crawl);
   }
   v1::ShotInfo& shot = *result.mutable_shot();
   shot.set_mode(ModeToProto(mode));
@@ -134,7 +127,7 @@ std::vector<ShotRow> RowsOfResult(const ShotJob& job,
                        proto.footprint().p99(),
                        proto.footprint().worst()};
       row.wrong_share = proto.foretold_wrong().final();
-      if (proto.shot().has_crawl()) row.crawl = CrawlOf(proto.shot().crawl());
+      if (proto.shot().has_crawl()) row.crawl = CrawlFromProto(proto.shot().crawl());
     }
     rows.push_back(std::move(row));
   }

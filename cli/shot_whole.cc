@@ -1,6 +1,7 @@
 #include "cli/shot_whole.h"
 
 #include <algorithm>
+#include <mutex>
 #include <optional>
 #include <utility>
 

@@ -11,8 +11,6 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "absl/types/span.h"
-
 namespace lightfit {
 
 // Exact as long as nothing overflows (1e300) and no product is so small that its rounding error

@@ -10,8 +10,6 @@
 #include <optional>
 #include <vector>
 
-#include "absl/types/span.h"
-
 namespace lightfit {
 
 // Rays inside the cone of others, or exactly on its faces, are left out; of rays in the very same

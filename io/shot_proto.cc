@@ -35,16 +35,6 @@ v1::TrackerAction TrackerActionToProto(TrackerAction action) {
   return v1::TRACKER_ACTION_UNSPECIFIED;
 }
 
-v1::FrameCrawl FrameCrawlToProto(const Crawl& crawl) {
-  v1::FrameCrawl proto;
-  proto.set_points(crawl.num_points);
-  proto.set_phase_drift_texels(crawl.phase_drift_texels);
-  proto.set_moved_share(crawl.moved_share);
-  proto.set_edge_points(crawl.num_edge_points);
-  proto.set_edge_crawl_px(crawl.edge_crawl_px);
-  return proto;
-}
-
 v1::TrackedState TrackedStateToProto(const TrackedState& state) {
   v1::TrackedState proto;
   proto.set_light(state.light.name);

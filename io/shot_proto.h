@@ -1,7 +1,7 @@
 // io/shot_proto.h
 //
 // What a frame of a shot has beside its matrices, to and from lightfit.v1.
-// In:   TrackerOptions, TrackerAction, TrackedState, Crawl.
+// In:   TrackerOptions, TrackerAction, TrackedState.
 // Out:  their messages in lightfit/v1/shot.proto; what a tracker remembers, read back exactly.
 #pragma once
 
@@ -12,7 +12,6 @@
 #include "geometry/clip.h"
 #include "geometry/light.h"
 #include "lightfit/v1/shot.pb.h"
-#include "optimizer/stability.h"
 #include "optimizer/tracker.h"
 
 namespace lightfit {
@@ -21,7 +20,6 @@ namespace lightfit {
 v1::TrackerSettings TrackerSettingsToProto(const TrackerOptions& options);
 
 v1::TrackerAction TrackerActionToProto(TrackerAction action);
-v1::FrameCrawl FrameCrawlToProto(const Crawl& crawl);
 
 v1::TrackedState TrackedStateToProto(const TrackedState& state);
 

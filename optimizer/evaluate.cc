@@ -14,29 +14,6 @@
 
 namespace lightfit {
 
-namespace {
-
-// The samples with w > 0.
-Samples SamplesInFront(const Samples& samples, const Eigen::RowVector3d& axis) {
-  Samples front;
-  front.ray_from_screen = samples.ray_from_screen;
-  front.counts = samples.counts;
-  for (size_t i = 0; i < samples.size(); ++i) {
-    if (!(axis.dot(samples.At(i).X) > 0.0)) continue;
-    front.x.push_back(samples.x[i]);
-    front.y.push_back(samples.y[i]);
-    front.d.push_back(samples.d[i]);
-    front.d_x.push_back(samples.d_x[i]);
-    front.d_y.push_back(samples.d_y[i]);
-    front.weight.push_back(samples.weight[i]);
-    front.edge_normal_x.push_back(samples.edge_normal_x[i]);
-    front.edge_normal_y.push_back(samples.edge_normal_y[i]);
-  }
-  return front;
-}
-
-}  // namespace
-
 absl::StatusOr<MatrixFigures> EvaluateMatrix(const Readback& readback,
                                              const Light& light,
                                              const Eigen::Matrix4d& map_from_world,

@@ -104,13 +104,11 @@ absl::StatusOr<Summary> SummarizeInMap(const Readback& readback,
   }
   const Eigen::Matrix3d map_from_normalized =
       *map_from_ray * prepared->summary.cover.normalized_from_ray.inverse();
-  for (size_t i = 0; i < prepared->samples.size(); ++i) {
-    if (map_from_normalized.row(2).dot(prepared->samples.At(i).X) > 0.0) continue;
-    return absl::FailedPreconditionError(
-        absl::StrFormat("light \"%s\": the matrix to weigh samples by has w <= 0 at some of them. "
-                        "Weigh by one that "
-                        "covers this frame",
-                        light.name));
+  // Of those the map gives no footprint to, the cover is all that is left.
+  prepared->samples = SamplesInFront(prepared->samples, map_from_normalized.row(2));
+  prepared->samples.counts.used = static_cast<int64_t>(prepared->samples.size());
+  if (prepared->samples.size() == 0) {
+    return SummarizeSamples(prepared->samples, prepared->summary.cover, prepared->summary.metric);
   }
   WeighIn(map_from_normalized, &*prepared);
   return std::move(prepared->summary);

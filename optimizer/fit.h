@@ -58,7 +58,8 @@ absl::StatusOr<LightMatrix> Fit(const Summary& summary,
 // The same halves with one map for many frames in mind: for the L1 metrics the samples weigh what
 // they do in `map_from_world` (texels, of any map size), the best of all frames so far, say.
 // Summarised, added and fitted once more, energies become what the sum of footprints is, and their
-// minimum the shot's own.   math.md 4. InvalidArgument when the matrix is not one of this light.
+// minimum the shot's own.   math.md 4. Samples with w <= 0 there are left out: what is lit may lie
+// beyond the map. InvalidArgument when the matrix is not one of this light.
 absl::StatusOr<Summary> SummarizeInMap(const Readback& readback,
                                        const Light& light,
                                        const Eigen::Matrix4d& map_from_world,

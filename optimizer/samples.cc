@@ -138,4 +138,23 @@ Samples SelectSamples(const Receivers& receivers,
   return samples;
 }
 
+Samples SamplesInFront(const Samples& samples, const Eigen::RowVector3d& axis) {
+  Samples front;
+  front.ray_from_screen = samples.ray_from_screen;
+  front.counts = samples.counts;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    if (!(axis.dot(samples.At(i).X) > 0.0)) continue;
+    front.x.push_back(samples.x[i]);
+    front.y.push_back(samples.y[i]);
+    front.d.push_back(samples.d[i]);
+    front.d_x.push_back(samples.d_x[i]);
+    front.d_y.push_back(samples.d_y[i]);
+    front.weight.push_back(samples.weight[i]);
+    if (!samples.has_edge_normals()) continue;
+    front.edge_normal_x.push_back(samples.edge_normal_x[i]);
+    front.edge_normal_y.push_back(samples.edge_normal_y[i]);
+  }
+  return front;
+}
+
 }  // namespace lightfit

@@ -45,4 +45,7 @@ Samples SelectSamples(const Receivers& receivers,
                       const Eigen::Matrix3d& normalized_from_ray,
                       bool with_edge_normals);
 
+// Those with w = p.X > 0, in the order they had. `counts` are as they were.
+Samples SamplesInFront(const Samples& samples, const Eigen::RowVector3d& axis);
+
 }  // namespace lightfit

@@ -3,7 +3,7 @@
 // Summaries of one light, added exactly: over tiles, frames and machines, in any order and
 // grouping, to the last bit.
 // In:   Summary and Light, as often as there are frames.
-// Out:  SummaryTotal, about a kilobyte; and from it the Summary of all the samples together.
+// Out:  SummaryTotal, one or two kilobytes; and from it the Summary of all the samples together.
 //
 // Every frame has normalised rays of its own. A total lives in light space, which all frames share;
 // what precision that costs with distant lights (docs/design.md) is made up for by two or

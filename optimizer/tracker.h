@@ -9,7 +9,9 @@
 // is one move that costs nothing: by whole texels, which leaves every texel on its surface.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "absl/status/status.h"

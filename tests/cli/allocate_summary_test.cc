@@ -16,6 +16,7 @@
 #include "tests/cli/allocations.h"
 #include "tests/cli/examples.h"
 #include "tests/cli/process.h"
+#include "tests/cli/summaries.h"
 
 namespace lightfit {
 namespace {
@@ -25,24 +26,6 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::StartsWith;
-
-using Arguments = std::vector<std::string>;
-
-Arguments Joined(Arguments first, const Arguments& second) {
-  first.insert(first.end(), second.begin(), second.end());
-  return first;
-}
-
-// The yard as a summary file of that name in the folder.
-std::string YardSummary(const TemporaryFolder& folder,
-                        const std::string& name,
-                        const Arguments& more = {}) {
-  const std::string path = folder.Path(name);
-  const Arguments summarize = {"summarize", kYard, "--lights", kYardLights, "-o", path};
-  const ProcessResult result = RunLightfit(Joined(summarize, more));
-  EXPECT_EQ(result.exit_code, 0) << result.err;
-  return path;
-}
 
 ProcessResult AllocateSummary(const std::string& path, const Arguments& more) {
   return RunLightfit(Joined({"allocate", "--summary", path}, more));

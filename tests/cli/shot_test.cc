@@ -131,7 +131,7 @@ TEST(Shot, FiguresOfAllModesAreByOneMeasure) {
           MeasureCrawl({readback_before, map_before, kMap}, {readback, map, kMap}, light);
       ASSERT_TRUE(crawl.ok()) << crawl.status();
       EXPECT_GT(crawl->num_points, 0);
-      EXPECT_EQ(result.lights(i).shot().crawl().points(), crawl->num_points);
+      EXPECT_EQ(result.lights(i).shot().crawl().num_points(), crawl->num_points);
       EXPECT_EQ(result.lights(i).shot().crawl().edge_crawl_px(), crawl->edge_crawl_px);
     }
   }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "absl/types/span.h"
 #include "tests/testing/random_cases.h"
 
 namespace lightfit {

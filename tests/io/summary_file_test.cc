@@ -5,7 +5,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,125 +14,27 @@
 #include <random>
 
 #include "absl/strings/str_cat.h"
-#include "io/lights_file.h"
-#include "io/readback_exr.h"
-#include "io/result_json.h"
-#include "io/summary_proto.h"
 #include "optimizer/fit.h"
-#include "tests/io/testing.h"
-#include "tests/testing/matchers.h"
+#include "tests/io/summary_examples.h"
 
 namespace lightfit {
 namespace {
 
 using ::testing::AllOf;
+using testing::BytesOf;
+using testing::FileAround;
+using testing::FitsOrSaysWhy;
+using testing::FrameOfYard;
+using testing::FramesOfYard;
 using ::testing::HasSubstr;
 using testing::IsOk;
+using testing::kMap;
+using testing::kWriter;
+using testing::SetOf;
 using testing::StatusIs;
-
-constexpr char kWriter[] = "lightfit test";
-constexpr MapSize kMap = {1024, 512};
-
-struct Example {
-  std::vector<Light> lights;
-  ReadbackFile file;
-};
-
-const Example& Yard() {
-  static const Example& example = *new Example([] {
-    Example yard;
-    yard.lights = *ReadLightsFile(testing::RepositoryFile("examples/yard_180/scene.json"));
-    yard.file =
-        *ReadReadbackExr(testing::RepositoryFile("examples/yard_180/0001.exr"), yard.lights);
-    return yard;
-  }());
-  return example;
-}
-
-// The yard with a bar of it gone, another one for each number: frames that see different things.
-ReadbackFile FrameOfYard(int number) {
-  ReadbackFile file = Yard().file;
-  const int width = file.camera.width;
-  const int first = 11 * number % width;
-  for (int y = 0; y < file.camera.height; ++y) {
-    for (int x = first; x < std::min(first + 40, width); ++x) {
-      file.depth[static_cast<size_t>(y) * width + x] = std::numeric_limits<float>::infinity();
-    }
-  }
-  return file;
-}
-
-SummarySet SetOf(const ReadbackFile& file,
-                 const std::string& name,
-                 const FitOptions& options = {}) {
-  std::vector<LightSummary> lights;
-  for (const Light& light : Yard().lights) {
-    lights.push_back(SummaryOfFrame(light, Summarize(file.View(), light, options), name, options));
-  }
-  return MakeSummarySet(options, std::move(lights));
-}
-
-std::vector<SummarySet> FramesOfYard(int count) {
-  std::vector<SummarySet> sets;
-  for (int i = 0; i < count; ++i) sets.push_back(SetOf(FrameOfYard(i), absl::StrCat(i, ".exr")));
-  return sets;
-}
-
-std::string BytesOf(const SummarySet& set) {
-  const absl::StatusOr<std::string> bytes = SerializeSummarySet(set, kWriter);
-  EXPECT_THAT(bytes, IsOk());
-  return bytes.ok() ? *bytes : "";
-}
-
-// One frame's; what the tests below change.
-const std::string& YardBytes() {
-  static const std::string& bytes = *new std::string(BytesOf(SetOf(Yard().file, "yard.exr")));
-  return bytes;
-}
-
-v1::SummaryFile YardProto() {
-  v1::SummaryFile proto;
-  EXPECT_TRUE(proto.ParseFromString(YardBytes().substr(20)));
-  return proto;
-}
-
-std::string Uint32Bytes(uint32_t value) {
-  std::string bytes;
-  for (int i = 0; i < 4; ++i) bytes += static_cast<char>(value >> 8 * i);
-  return bytes;
-}
-
-// A file around any payload, with length and checksum as they should be.
-std::string FileAround(const std::string& payload) {
-  const uLong crc = crc32(0, reinterpret_cast<const Bytef*>(payload.data()), payload.size());
-  return absl::StrCat(YardBytes().substr(0, 12),
-                      Uint32Bytes(static_cast<uint32_t>(payload.size())),
-                      Uint32Bytes(static_cast<uint32_t>(crc)),
-                      payload);
-}
-
-// Whatever a file says that is read without complaint: a fit is a matrix of numbers or a status.
-// Returns whether it is a matrix.
-bool FitsOrSaysWhy(const LightSummary& light, const FitOptions& options) {
-  const absl::StatusOr<Summary> summary = SummaryOfTotal(light.total);
-  LightFit fit;
-  fit.light = light.total.light;
-  fit.matrix = summary.ok() ? Fit(*summary, fit.light, kMap, options)
-                            : absl::StatusOr<LightMatrix>(summary.status());
-  const bool has_matrix = fit.matrix.ok();
-  if (has_matrix) {
-    EXPECT_TRUE(fit.matrix->map_from_world.allFinite());
-    EXPECT_TRUE(std::isfinite(fit.matrix->energy)) << fit.matrix->energy;
-  } else {
-    EXPECT_FALSE(fit.matrix.status().message().empty());
-  }
-  FitReport report;
-  report.options = options;
-  report.map = kMap;
-  report.lights = {fit};
-  EXPECT_THAT(FitResultToJson(FitResultToProto(report)), IsOk());
-  return has_matrix;
-}
+using testing::Yard;
+using testing::YardBytes;
+using testing::YardProto;
 
 TEST(SummaryFile, ReadsBackWhatWasWritten) {
   const testing::TemporaryFolder folder;
@@ -503,95 +404,6 @@ TEST(SummaryFile, WhatCouldNotBeReadIsNotWritten) {
   EXPECT_THAT(WriteSummaryFile(folder.File("a.summary"), set, kWriter),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("a.summary")));
   EXPECT_EQ(folder.num_files(), 0u);
-}
-
-TEST(DamagedSummaryFile, EveryCutIsAnError) {
-  const std::string& whole = YardBytes();
-  for (size_t length = 0; length < whole.size(); ++length) {
-    const absl::StatusOr<SummarySet> set = ParseSummarySet(whole.substr(0, length));
-    ASSERT_EQ(set.status().code(), absl::StatusCode::kInvalidArgument) << length;
-    ASSERT_FALSE(set.status().message().empty());
-  }
-}
-
-std::string Damaged(std::string bytes, size_t first, std::mt19937* random) {
-  const int count = 1 + static_cast<int>((*random)() % 4);
-  for (int i = 0; i < count; ++i) {
-    const size_t at = first + (*random)() % (bytes.size() - first);
-    // A single bit, or any byte.
-    bytes[at] =
-        static_cast<char>((*random)() % 2 == 0 ? bytes[at] ^ 1 << (*random)() % 8 : (*random)());
-  }
-  return bytes;
-}
-
-TEST(DamagedSummaryFile, RandomDamageIsAnError) {
-  std::mt19937 random(testing::kSeed);
-  std::cout << "seed " << testing::kSeed << "\n";
-  for (int i = 0; i < 1000; ++i) {
-    const std::string bytes = Damaged(YardBytes(), 0, &random);
-    if (bytes == YardBytes()) continue;
-    EXPECT_EQ(ParseSummarySet(bytes).status().code(), absl::StatusCode::kInvalidArgument);
-  }
-}
-
-// Damage that its maker has put the right checksum on: an error, or numbers that can be worked on.
-TEST(DamagedSummaryFile, DamageWithARightChecksumIsAnErrorOrUsable) {
-  std::mt19937 random(testing::kSeed);
-  std::cout << "seed " << testing::kSeed << "\n";
-  const std::string payload = YardBytes().substr(20);
-  int errors = 0, usable = 0;
-  for (int i = 0; i < 1000; ++i) {
-    const absl::StatusOr<SummarySet> set =
-        ParseSummarySet(FileAround(Damaged(payload, 0, &random)));
-    if (set.ok()) {
-      // Fits are slow beside the rest: a tenth of them.
-      if (usable++ % 10 == 0) FitsOrSaysWhy(set->lights[random() % 3], set->options);
-    } else {
-      EXPECT_FALSE(set.status().message().empty());
-      ++errors;
-    }
-  }
-  std::cout << errors << " errors, " << usable << " usable\n";
-  EXPECT_GT(errors, 500);
-  EXPECT_GT(usable, 0);
-}
-
-// The worst numbers that pass the checks one by one.
-TEST(DamagedSummaryFile, WildNumbersAreErrorsOrUsable) {
-  std::mt19937 random(testing::kSeed);
-  std::cout << "seed " << testing::kSeed << "\n";
-  int errors = 0, usable = 0;
-  for (int i = 0; i < 120; ++i) {
-    v1::SummaryFile proto = YardProto();
-    const double values[] = {1e100, -1e100, 1e-300, -1.0, 5e-324, 1e30, -1e-30};
-    for (v1::LightSummary& light : *proto.mutable_lights()) {
-      v1::SummaryTotal& total = *light.mutable_total();
-      const double value = values[random() % std::size(values)];
-      v1::ExactSum* sums[] = {
-          total.mutable_tensor(static_cast<int>(random() % 36)),
-          total.mutable_total_weight(),
-          total.mutable_footprint_sum(),
-          total.mutable_cover()->mutable_mean_ray(static_cast<int>(random() % 3))};
-      v1::ExactSum& sum = *sums[random() % std::size(sums)];
-      sum.clear_parts();
-      sum.add_parts(value);
-      if (random() % 4 == 0) total.mutable_cover()->set_far(1e100);
-      if (random() % 4 == 0 && !light.light().position().empty()) {
-        light.mutable_light()->set_position(0, 1e300 * value);
-      }
-    }
-    const absl::StatusOr<SummarySet> set = ParseSummarySet(FileAround(proto.SerializeAsString()));
-    if (set.ok()) {
-      FitsOrSaysWhy(set->lights[random() % 3], set->options);
-      ++usable;
-    } else {
-      ++errors;
-    }
-  }
-  std::cout << errors << " errors, " << usable << " usable\n";
-  EXPECT_GT(errors, 10);
-  EXPECT_GT(usable, 10);
 }
 
 }  // namespace

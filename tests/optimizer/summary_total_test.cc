@@ -313,5 +313,36 @@ TEST(SummarizeInMap, RoundsOverFramesFindTheBestSumOfFootprints) {
   std::printf("sum of footprints after rounds / before: at best %.4f\n", gain);
 }
 
+// A warp may have w <= 0 at lit samples beyond what it covers. They are left out; the frame and
+// what must be covered in it are not.
+TEST(SummarizeInMap, LeavesOutWhatLiesBehindTheMap) {
+  const FitOptions options;
+  int num_split = 0;
+  for (uint64_t seed = 1; seed <= 4; ++seed) {
+    const testing::TestScene scene(seed, 3);
+    for (const Light& light : scene.lights) {
+      const auto whole = Summarize(scene.View(), light, options);
+      if (!whole.ok() || whole->counts.used < 8) continue;
+      // w is 0 across the middle of the normalised rays.
+      Eigen::Matrix3d map_from_normalized = Eigen::Matrix3d::Identity();
+      map_from_normalized.row(2) = Eigen::RowVector3d(1.0, 0.0, 0.05);
+      map_from_normalized.row(0) = Eigen::RowVector3d(0.0, 0.0, 1.0);
+      const Eigen::Matrix<double, 3, 4> rows =
+          map_from_normalized * whole->cover.normalized_from_ray * RayFromWorld(light);
+      Eigen::Matrix4d map_from_world;
+      map_from_world << rows.topRows<2>(), Eigen::RowVector4d::UnitX(), rows.row(2);
+      const auto front = SummarizeInMap(scene.View(), light, map_from_world, options);
+      ASSERT_THAT(front, IsOk());
+      EXPECT_EQ(front->cover.hull, whole->cover.hull);
+      EXPECT_LE(front->counts.used, whole->counts.used);
+      EXPECT_TRUE(front->tensor.entries().allFinite());
+      EXPECT_EQ(front->footprint_sum > 0.0, front->counts.used > 0);
+      EXPECT_THAT(MergeSummaries({*whole, *front}, light), IsOk());
+      num_split += front->counts.used > 0 && front->counts.used < whole->counts.used;
+    }
+  }
+  EXPECT_GE(num_split, 5);
+}
+
 }  // namespace
 }  // namespace lightfit
