@@ -9,6 +9,7 @@
 #include "absl/strings/str_format.h"
 #include "optimizer/fit.h"
 #include "optimizer/map_shapes.h"
+#include "optimizer/stop.h"
 
 namespace lightfit {
 
@@ -75,14 +76,18 @@ std::vector<double> SplitTexels(absl::Span<const double> factors,
 }
 
 std::vector<size_t> ChooseSizes(absl::Span<const std::vector<RatedSize>> sizes,
-                                int64_t budget_texels) {
+                                int64_t budget_texels,
+                                const std::stop_token& stop) {
   constexpr int64_t kMaxCells = 8192;
   const int64_t cell_texels = (budget_texels + kMaxCells - 1) / kMaxCells;
   const auto num_cells = static_cast<size_t>(budget_texels / cell_texels + 1);
-  std::vector<std::vector<Spending>> after(sizes.size() + 1, std::vector<Spending>(num_cells));
+  std::vector<size_t> chosen(sizes.size());
+  std::vector<std::vector<Spending>> after = {std::vector<Spending>(num_cells)};
   after[0][0].cost = 0.0;
   for (size_t light = 0; light < sizes.size(); ++light) {
+    after.emplace_back(num_cells);
     for (size_t cell = 0; cell < num_cells; ++cell) {
+      if (stop.stop_requested()) return chosen;
       const Spending& before = after[light][cell];
       if (std::isinf(before.cost)) continue;
       for (size_t choice = 0; choice < sizes[light].size(); ++choice) {
@@ -98,7 +103,6 @@ std::vector<size_t> ChooseSizes(absl::Span<const std::vector<RatedSize>> sizes,
       after.back().begin(), after.back().end(), [](const Spending& a, const Spending& b) {
         return a.cost < b.cost;
       });
-  std::vector<size_t> chosen(sizes.size());
   auto cell = static_cast<size_t>(cheapest - after.back().begin());
   for (size_t light = sizes.size(); light > 0; --light) {
     chosen[light - 1] = after[light][cell].choice;
@@ -109,7 +113,9 @@ std::vector<size_t> ChooseSizes(absl::Span<const std::vector<RatedSize>> sizes,
 
 std::vector<RatedSize> RateSizes(const MapShapes& shapes,
                                  double weight,
-                                 const MapSizeRules& rules) {
+                                 const MapSizeRules& rules,
+                                 const std::stop_token& stop) {
+  constexpr size_t kMaxUnsorted = 1 << 14;  // a millisecond or two
   const std::vector<int> sides = AllowedSides(rules);
   std::vector<RatedSize> sizes;
   for (const int height : sides) {
@@ -118,6 +124,8 @@ std::vector<RatedSize> RateSizes(const MapShapes& shapes,
       const MapSize map = {width, height};
       sizes.push_back({map, TexelsOf(map), weight * shapes.Energy(width, height)});
     }
+    if (stop.stop_requested()) break;
+    if (sizes.size() > kMaxUnsorted) sizes = WorthwhileSizes(std::move(sizes));
   }
   return WorthwhileSizes(std::move(sizes));
 }
@@ -129,6 +137,7 @@ absl::StatusOr<Allocation> AllocateBudget(absl::Span<const AllocationLight> ligh
   if (absl::Status status = Validate(lights, budget_texels, rules, options); !status.ok()) {
     return status;
   }
+  constexpr char kSubject[] = "allocation";
   Allocation allocation;
   allocation.maps.resize(lights.size());
   std::vector<size_t> fitted;  // the lights that take part
@@ -148,9 +157,10 @@ absl::StatusOr<Allocation> AllocateBudget(absl::Span<const AllocationLight> ligh
     fitted.push_back(i);
     exponent = shapes->Exponent();
     factors.push_back(light.weight * shapes->UnitEnergy());
-    sizes.push_back(RateSizes(*shapes, light.weight, rules));
+    sizes.push_back(RateSizes(*shapes, light.weight, rules, options.stop));
     least_texels += sizes.back().front().texels;
   }
+  if (absl::Status status = CheckStop(options.stop, kSubject); !status.ok()) return status;
   if (fitted.empty()) return allocation;
   if (budget_texels < least_texels) {
     const int side = AllowedSides(rules).front();
@@ -170,7 +180,7 @@ absl::StatusOr<Allocation> AllocateBudget(absl::Span<const AllocationLight> ligh
                                                 exponent,
                                                 static_cast<double>(budget_texels),
                                                 {least_side * least_side, most_side * most_side});
-  const std::vector<size_t> chosen = ChooseSizes(sizes, budget_texels);
+  const std::vector<size_t> chosen = ChooseSizes(sizes, budget_texels, options.stop);
   for (size_t n = 0; n < fitted.size(); ++n) {
     const AllocationLight& light = lights[fitted[n]];
     AllocatedMap& map = allocation.maps[fitted[n]];
@@ -183,6 +193,7 @@ absl::StatusOr<Allocation> AllocateBudget(absl::Span<const AllocationLight> ligh
     allocation.energy += light.weight * map.matrix->energy;
     allocation.ideal_energy += light.weight * map.ideal_energy;
   }
+  if (absl::Status status = CheckStop(options.stop, kSubject); !status.ok()) return status;
   return allocation;
 }
 

@@ -38,7 +38,10 @@ void Publish(const absl::StatusOr<TrackedMatrix>& result, FrameLight* light) {
   light->action = ok ? result->action : TrackerAction::kFirst;
 }
 
-void Update(const Submission& submission, Tracker* tracker, FrameMatrices* matrices) {
+void Update(const Submission& submission,
+            const std::stop_token& stop,
+            Tracker* tracker,
+            FrameMatrices* matrices) {
   const FrameReadback& readback = submission.readback;
   const size_t num_lights = std::min(readback.lights.size(), size_t{kMaxLights});
   matrices->frame = readback.frame;
@@ -53,7 +56,9 @@ void Update(const Submission& submission, Tracker* tracker, FrameMatrices* matri
     for (FrameLight& light : matrices->lights) Publish(too_many, &light);
     return;
   }
-  tracker->set_options(submission.options);
+  TrackerOptions options = submission.options;
+  options.fit.stop = stop;
+  tracker->set_options(options);
   const auto results = tracker->Update(readback.View(), readback.lights, readback.map);
   for (size_t i = 0; i < num_lights; ++i) Publish(results[i], &matrices->lights[i]);
 }
@@ -77,10 +82,9 @@ struct AsyncOptimizer::Shared {
   // second, so that what comes in between changes the number and does not let it fall asleep. All
   // accesses are sequentially consistent: whoever counts up sees a sleeper, or the sleeper sees it.
   std::atomic<uint32_t> wake = 0;
-  std::atomic<bool> stop = false;
 
   std::atomic<int64_t> num_submitted = 0, num_done = 0, num_skipped = 0;
-  std::thread thread;
+  std::jthread thread;  // its stop ends the frame in work, and then the thread
 
   // A system call, but only when the optimizer sleeps; naps end by themselves.
   void WakeUp() {
@@ -89,13 +93,13 @@ struct AsyncOptimizer::Shared {
   }
 
   // The optimizer's thread.
-  void Run() {
+  void Run(const std::stop_token& stop) {
     ScratchPool pool;  // no frame but the first few takes anything from the heap
     Tracker tracker{TrackerOptions()};
     int num_naps = 0;
     while (true) {
       const uint32_t wake_before = wake.load();
-      if (stop.load()) return;
+      if (stop.stop_requested()) return;
       if (!submissions.Take()) {
         if (num_naps < kNumNaps) {
           ++num_naps;
@@ -108,8 +112,9 @@ struct AsyncOptimizer::Shared {
       num_naps = 0;
       {
         const ScratchScope scope(&pool);
-        Update(submissions.front(), &tracker, &matrices.back());
+        Update(submissions.front(), stop, &tracker, &matrices.back());
       }
+      if (stop.stop_requested()) return;
       num_done.fetch_add(1);  // first, so that nobody polls a frame that is not counted
       matrices.Publish();
     }
@@ -117,7 +122,7 @@ struct AsyncOptimizer::Shared {
 
   ~Shared() {
     if (!thread.joinable()) return;
-    stop.store(true);
+    thread.request_stop();
     WakeUp();
     thread.join();
   }
@@ -128,7 +133,8 @@ absl::StatusOr<AsyncOptimizer> AsyncOptimizer::Start(const TrackerOptions& optio
   auto shared = std::make_unique<Shared>();
   shared->options = options;
   try {
-    shared->thread = std::thread(&Shared::Run, shared.get());
+    shared->thread =
+        std::jthread([shared = shared.get()](std::stop_token stop) { shared->Run(stop); });
   } catch (const std::system_error& error) {
     return absl::ResourceExhaustedError(
         absl::StrFormat("cannot start the optimizer's thread: %s; raise the limit of threads, or "

@@ -73,14 +73,16 @@ struct FrameMatrices {
 class AsyncOptimizer {
  public:
   // Starts the thread, which sleeps until the first frame. InvalidArgument as
-  // ValidateTrackerOptions(); ResourceExhausted when no thread is to be had.
+  // ValidateTrackerOptions(); ResourceExhausted when no thread is to be had. Here and in
+  // SetOptions() `fit.stop` does not count: the destructor is what stops the work.
   static absl::StatusOr<AsyncOptimizer> Start(const TrackerOptions& options = {});
 
   AsyncOptimizer(AsyncOptimizer&&) noexcept;
   AsyncOptimizer& operator=(AsyncOptimizer&&) noexcept;
 
-  // Waits for the frame in work, if any, and ends the thread. What waits is dropped. Not while
-  // another thread is in one of the functions below.
+  // Stops the frame in work, if any, and ends the thread, which takes a fraction of a millisecond
+  // or a few rows of pixels. That frame and what waits are dropped. Not while another thread is in
+  // one of the functions below.
   ~AsyncOptimizer();
 
   // Submitting thread. The buffer to fill for the next Submit(), with what some earlier frame left

@@ -6,10 +6,12 @@
 
 #include "geometry/convex_hull.h"
 #include "geometry/scratch.h"
+#include "optimizer/stop.h"
 
 namespace lightfit {
 
 std::optional<AffineFit> AxisEvaluator::Evaluate(const Eigen::Vector3d& axis) {
+  if (problem_.stop.stop_requested()) return std::nullopt;
   if (!axis.allFinite() || !(axis.z() > 0.0)) return std::nullopt;
   std::optional<AffineFit> fit = EvaluateScaled(axis / axis.z());
   if (fit.has_value()) ++num_evaluations_;
@@ -46,7 +48,9 @@ std::optional<AffineFit> SampleEvaluator::EvaluateScaled(const Eigen::Vector3d& 
   plane_from_ray.row(2) = axis;
   ScratchVector<Eigen::Vector2d> points;
   points.reserve(receiver_rays_.size());
-  for (const Eigen::Vector3d& ray : receiver_rays_) {
+  for (size_t i = 0; i < receiver_rays_.size(); ++i) {
+    if (IsStopped(problem().stop, i)) return std::nullopt;
+    const Eigen::Vector3d& ray = receiver_rays_[i];
     const double w = axis.dot(ray);
     if (!(w >= min_w() * ray.z())) return std::nullopt;
     points.emplace_back(ray.x() / w, ray.y() / w);
@@ -59,12 +63,12 @@ std::optional<AffineFit> SampleEvaluator::EvaluateScaled(const Eigen::Vector3d& 
   }
   absl::StatusOr<AffineFit> fit = FitAffine(problem(), hull, Eigen::Matrix3d::Identity(), axis);
   if (!fit.ok()) return std::nullopt;
-  fit->energy = Energy(fit->map_from_ray, samples_, metric_);
+  fit->energy = Energy(fit->map_from_ray, samples_, metric_, problem().stop);
   return *std::move(fit);
 }
 
 Eigen::Vector3d SampleEvaluator::Gradient(const AffineFit& fit) {
-  return EnergyAndGradient(fit.map_from_ray, samples_, metric_).dE_dp;
+  return EnergyAndGradient(fit.map_from_ray, samples_, metric_, problem().stop).dE_dp;
 }
 
 }  // namespace lightfit

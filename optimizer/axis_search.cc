@@ -13,6 +13,7 @@
 #include "optimizer/l1_weights.h"
 #include "optimizer/polish.h"
 #include "optimizer/refine.h"
+#include "optimizer/stop.h"
 
 namespace lightfit {
 
@@ -20,9 +21,12 @@ namespace {
 
 // Rays of all receivers in normalised coordinates, for SampleEvaluator.
 ScratchVector<Eigen::Vector3d> ReceiverRays(const Receivers& receivers,
-                                            const Eigen::Matrix<double, 3, 4>& ray_from_screen) {
+                                            const Eigen::Matrix<double, 3, 4>& ray_from_screen,
+                                            const std::stop_token& stop) {
   ScratchVector<Eigen::Vector3d> rays;
+  rays.reserve(receivers.tiles.num_surfaces);
   for (const DepthTile& tile : receivers.tiles.grids[0].tiles) {
+    if (stop.stop_requested()) break;
     if (tile.num_surfaces == 0) continue;
     ForEachSurface(receivers.readback,
                    receivers.affine_depth,
@@ -54,7 +58,7 @@ absl::StatusOr<SearchOutcome> SearchSquares(const SearchInputs& inputs,
   std::optional<SummaryEvaluator> by_summary;
   AxisEvaluator* evaluator = nullptr;
   if (options.sample_by_sample && inputs.samples != nullptr && inputs.receivers != nullptr) {
-    receiver_rays = ReceiverRays(*inputs.receivers, inputs.samples->ray_from_screen);
+    receiver_rays = ReceiverRays(*inputs.receivers, inputs.samples->ray_from_screen, options.stop);
     evaluator =
         &by_samples.emplace(*inputs.samples, receiver_rays, summary.metric, problem, options.min_w);
   } else {
@@ -139,7 +143,8 @@ absl::StatusOr<SearchOutcome> StartOfL1(const SearchInputs& inputs,
   absl::StatusOr<SearchOutcome> start = SearchSquares(inputs, inputs.summary, map, focused);
   if (!start.ok()) return start.status();
   AffineFit& fit = start->result.fit;
-  fit.energy = WeightsForL1(*inputs.samples, inputs.summary.metric, fit.map_from_ray).footprint_sum;
+  fit.energy = WeightsForL1(*inputs.samples, inputs.summary.metric, fit.map_from_ray, options.stop)
+                   .footprint_sum;
   start->energy_start = fit.energy;
   start->result.trace = {{"start", start->evaluations, fit.energy}};
   return start;
@@ -160,8 +165,9 @@ absl::StatusOr<SearchOutcome> SearchL1(const SearchInputs& inputs,
   Samples reweighted = *inputs.samples;
   SearchOutcome current = *best;
   for (int round = 0; round < options.reweighting_rounds; ++round) {
+    if (options.stop.stop_requested()) break;
     const Summary summary =
-        SummarizeSamples(reweighted, inputs.summary.cover, inputs.summary.metric);
+        SummarizeSamples(reweighted, inputs.summary.cover, inputs.summary.metric, options.stop);
     if (round > 0 && Polishes(options)) {
       const AffineProblem problem = MakeAffineProblem(summary, map, options);
       SummaryEvaluator evaluator(summary, problem, options.min_w);
@@ -180,8 +186,9 @@ absl::StatusOr<SearchOutcome> SearchL1(const SearchInputs& inputs,
       current = *std::move(outcome);
       evaluations += current.evaluations;
     }
-    L1Weights l1 =
-        WeightsForL1(*inputs.samples, inputs.summary.metric, current.result.fit.map_from_ray);
+    if (options.stop.stop_requested()) break;
+    L1Weights l1 = WeightsForL1(
+        *inputs.samples, inputs.summary.metric, current.result.fit.map_from_ray, options.stop);
     trace.push_back({round == 0 ? "search" : "reweight", evaluations, l1.footprint_sum});
     if (l1.footprint_sum < best->result.fit.energy) {
       best = current;
@@ -206,6 +213,20 @@ SearchOutcome AsFootprintSums(SearchOutcome outcome, double footprint_sum) {
   return outcome;
 }
 
+absl::StatusOr<SearchOutcome> SearchInMetric(const SearchInputs& inputs,
+                                             MapSize map,
+                                             const FitOptions& options) {
+  const bool is_l1 = IsL1(options.metric) && inputs.summary.counts.used > 0;
+  if (is_l1 && inputs.samples != nullptr) return SearchL1(inputs, map, options);
+  absl::StatusOr<SearchOutcome> outcome = SearchSquares(inputs, inputs.summary, map, options);
+  if (!outcome.ok()) return outcome;
+  if (inputs.to_the_end && Polishes(options)) {
+    PolishExactly(inputs.summary, map, options, &*outcome);
+  }
+  if (!is_l1) return outcome;
+  return AsFootprintSums(*std::move(outcome), inputs.summary.footprint_sum);
+}
+
 }  // namespace
 
 AffineProblem MakeAffineProblem(const Summary& summary, MapSize map, const FitOptions& options) {
@@ -220,21 +241,17 @@ AffineProblem MakeAffineProblem(const Summary& summary, MapSize map, const FitOp
   problem.normalized_from_ray = summary.cover.normalized_from_ray;
   problem.margin_percent = options.margin_percent;
   problem.margin_texels = options.margin_texels;
+  problem.stop = options.stop;
   return problem;
 }
 
 absl::StatusOr<SearchOutcome> SearchAxis(const SearchInputs& inputs,
                                          MapSize map,
                                          const FitOptions& options) {
-  const bool is_l1 = IsL1(options.metric) && inputs.summary.counts.used > 0;
-  if (is_l1 && inputs.samples != nullptr) return SearchL1(inputs, map, options);
-  absl::StatusOr<SearchOutcome> outcome = SearchSquares(inputs, inputs.summary, map, options);
-  if (!outcome.ok()) return outcome;
-  if (inputs.to_the_end && Polishes(options)) {
-    PolishExactly(inputs.summary, map, options, &*outcome);
-  }
-  if (!is_l1) return outcome;
-  return AsFootprintSums(*std::move(outcome), inputs.summary.footprint_sum);
+  absl::StatusOr<SearchOutcome> outcome = SearchInMetric(inputs, map, options);
+  // Whatever it is, it may be that because no more axes could be used.
+  if (absl::Status status = CheckStop(options.stop, inputs.light); !status.ok()) return status;
+  return outcome;
 }
 
 }  // namespace lightfit

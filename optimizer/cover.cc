@@ -13,6 +13,7 @@
 #include "geometry/inside_test.h"
 #include "geometry/ray_cone.h"
 #include "geometry/scratch.h"
+#include "optimizer/stop.h"
 
 namespace lightfit {
 
@@ -41,10 +42,11 @@ std::array<Eigen::Vector4d, 8> Corners(const DepthTile& tile) {
   return corners;
 }
 
-// The receivers that are to be covered.
+// The receivers that are to be covered, and when to stop looking at them.
 struct CoveredSurfaces {
   const Receivers& receivers;
   const DepthTiles& tiles;
+  const std::stop_token& stop;
 
   template <typename Visitor>
   void ForEach(const DepthTile& tile, const Visitor& visit) const {
@@ -70,6 +72,7 @@ ScratchVector<Eigen::Vector4d> OneReceiverPerTile(const CoveredSurfaces& covered
   };
   ScratchVector<Eigen::Vector4d> found;
   for (const DepthTile& tile : covered.tiles.grids[grid].tiles) {
+    if (covered.stop.stop_requested()) break;
     if (tile.num_surfaces > 0) found.push_back(first_receiver(tile));
   }
   return found;
@@ -107,7 +110,7 @@ class HullBuilder {
   void Visit(size_t level, size_t index) {
     const TileGrid& grid = covered_.tiles.grids[level];
     const DepthTile& tile = grid.tiles[index];
-    if (tile.num_surfaces == 0) return;
+    if (tile.num_surfaces == 0 || covered_.stop.stop_requested()) return;
     const std::array<Eigen::Vector4d, 8> corners = Corners(tile);
     if (std::all_of(corners.begin(), corners.end(), [this](const Eigen::Vector4d& corner) {
           return (*inside_)(Project(corner));
@@ -152,6 +155,7 @@ class HullBuilder {
 TileGrid PixelGrid(const CoveredSurfaces& covered) {
   TileGrid pixels;
   for (const DepthTile& tile : covered.tiles.grids[0].tiles) {
+    if (covered.stop.stop_requested()) break;
     if (tile.num_surfaces == 0) continue;
     covered.ForEach(tile, [&pixels](int x, int y, double d) {
       pixels.tiles.push_back({x, y, x + 1, y + 1, d, d, 1});
@@ -237,14 +241,16 @@ absl::Status SurroundedError(const Light& light) {
 
 absl::StatusOr<RayCover> CoverReceivers(const Receivers& receivers,
                                         const Light& light,
-                                        Cover which) {
+                                        Cover which,
+                                        const std::stop_token& stop) {
   DepthTiles shadowed;
   if (which == Cover::kShadowed) {
     shadowed = BuildDepthTiles(
-        receivers.readback, receivers.affine_depth, {uint32_t{1} << light.shadow_bit});
+        receivers.readback, receivers.affine_depth, {uint32_t{1} << light.shadow_bit}, stop);
   }
+  if (absl::Status status = CheckStop(stop, light); !status.ok()) return status;
   const bool covers_all = shadowed.num_surfaces == 0;
-  const CoveredSurfaces covered = {receivers, covers_all ? receivers.tiles : shadowed};
+  const CoveredSurfaces covered = {receivers, covers_all ? receivers.tiles : shadowed, stop};
   const DepthTiles& tiles = covered.tiles;
   const Matrix34d ray_from_screen = RayFromWorld(light) * receivers.world_from_screen;
   const Eigen::RowVector4d scale_from_screen = receivers.world_from_screen.row(3);
@@ -267,8 +273,12 @@ absl::StatusOr<RayCover> CoverReceivers(const Receivers& receivers,
       for (const Eigen::Vector4d& receiver : OneReceiverPerTile(covered, 0)) {
         some_rays.push_back(ray_from_screen * receiver);
       }
-      if (!FeasibleAxis(some_rays).has_value()) return SurroundedError(light);
+      if (!FeasibleAxis(some_rays).has_value()) {
+        absl::Status status = CheckStop(stop, light);
+        return status.ok() ? SurroundedError(light) : status;
+      }
       pixels = PixelGrid(covered);
+      if (absl::Status status = CheckStop(stop, light); !status.ok()) return status;
       boxes = &pixels;
       axis = AxisOfBoxes(pixels, ray_from_screen);
     }
@@ -283,10 +293,12 @@ absl::StatusOr<RayCover> CoverReceivers(const Receivers& receivers,
   cover.depth = RangeOverBoxes(*boxes, depth_from_screen, scale_from_screen);
 
   cover.hull = HullBuilder(covered, frame_from_ray * ray_from_screen).ExactHull();
+  if (absl::Status status = CheckStop(stop, light); !status.ok()) return status;
   const std::optional<Eigen::Matrix3d> normalized = NormalizeRays(frame_from_ray, &cover.hull);
   if (!normalized.has_value()) {
     // A single shadowed pixel, or a row of them, has no area, which is as good as no shadow.
-    return covers_all ? FlatError(light) : CoverReceivers(receivers, light, Cover::kReceivers);
+    return covers_all ? FlatError(light)
+                      : CoverReceivers(receivers, light, Cover::kReceivers, stop);
   }
   cover.normalized_from_ray = *normalized;
   if (!covers_all) {

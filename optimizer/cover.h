@@ -6,6 +6,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <stop_token>
 
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
@@ -45,10 +46,11 @@ struct RayCover {
 // of them), kShadowed covers every receiver.
 //
 // FailedPrecondition when the receivers to cover surround a point light, or all lie in one plane
-// with the light.
+// with the light; CancelledError once `stop` says so.
 absl::StatusOr<RayCover> CoverReceivers(const Receivers& receivers,
                                         const Light& light,
-                                        Cover cover = Cover::kReceivers);
+                                        Cover cover = Cover::kReceivers,
+                                        const std::stop_token& stop = {});
 
 // The cover of rays that are known by their hull alone: `rays` in light space, `depth` as in
 // RayCover for a directional light, distances from a point light. `mean_ray` is not used where it

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <stop_token>
 
 #include "geometry/scratch.h"
 #include "optimizer/readback.h"
@@ -45,9 +46,11 @@ struct DepthTiles {
   static constexpr int kTilesPerSide = 4;
 };
 
+// Not to be looked at once `stop` says so: the grids may be missing.
 DepthTiles BuildDepthTiles(const Readback& readback,
                            const AffineDepth& affine_depth,
-                           SurfaceFilter filter);
+                           SurfaceFilter filter,
+                           const std::stop_token& stop = {});
 
 // Calls visit(x, y, d) at every surface of the tile that the filter lets through, in row order.
 template <typename Visitor>

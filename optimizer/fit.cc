@@ -8,6 +8,7 @@
 #include "optimizer/l1_weights.h"
 #include "optimizer/prepared_light.h"
 #include "optimizer/receivers.h"
+#include "optimizer/stop.h"
 
 namespace lightfit {
 
@@ -25,7 +26,7 @@ LightMatrices FitLights(const Readback& readback,
     if (light_status.back().ok()) light_mask |= uint32_t{1} << light.shadow_bit;
   }
   const absl::StatusOr<Receivers> receivers =
-      status.ok() ? FindReceivers(readback, light_mask, options.samples) : status;
+      status.ok() ? FindReceivers(readback, light_mask, options.samples, options.stop) : status;
 
   for (size_t i = 0; i < lights.size(); ++i) {
     if (!receivers.ok()) {
@@ -54,11 +55,14 @@ absl::StatusOr<LightMatrix> FitLight(const Readback& readback,
 namespace {
 
 // For the L1 metrics gives the samples the weights they have in a map, and sums them up.
-void WeighIn(const Eigen::Matrix3d& map_from_normalized, PreparedLight* prepared) {
-  L1Weights l1 = WeightsForL1(prepared->samples, prepared->summary.metric, map_from_normalized);
+void WeighIn(const Eigen::Matrix3d& map_from_normalized,
+             const std::stop_token& stop,
+             PreparedLight* prepared) {
+  L1Weights l1 =
+      WeightsForL1(prepared->samples, prepared->summary.metric, map_from_normalized, stop);
   prepared->samples.weight = std::move(l1.weights);
   prepared->summary = SummarizeSamples(
-      prepared->samples, RayCover(prepared->summary.cover), prepared->summary.metric);
+      prepared->samples, RayCover(prepared->summary.cover), prepared->summary.metric, stop);
   prepared->summary.footprint_sum = l1.floored_sum;
 }
 
@@ -70,7 +74,7 @@ absl::StatusOr<Summary> Summarize(const Readback& readback,
   if (absl::Status status = ValidateFitOptions(options); !status.ok()) return status;
   if (absl::Status status = ValidateLight(light); !status.ok()) return status;
   absl::StatusOr<Receivers> receivers =
-      FindReceivers(readback, uint32_t{1} << light.shadow_bit, options.samples);
+      FindReceivers(readback, uint32_t{1} << light.shadow_bit, options.samples, options.stop);
   if (!receivers.ok()) return receivers.status();
   absl::StatusOr<PreparedLight> prepared = PrepareLight(*receivers, light, options);
   if (!prepared.ok()) return prepared.status();
@@ -81,8 +85,9 @@ absl::StatusOr<Summary> Summarize(const Readback& readback,
     const absl::StatusOr<SearchOutcome> outcome = SearchAxis(
         {light, prepared->summary, &prepared->samples, &*receivers}, kAnySquare, options);
     if (!outcome.ok()) return outcome.status();
-    WeighIn(outcome->result.fit.map_from_ray, &*prepared);
+    WeighIn(outcome->result.fit.map_from_ray, options.stop, &*prepared);
   }
+  if (absl::Status status = CheckStop(options.stop, light); !status.ok()) return status;
   return std::move(prepared->summary);
 }
 
@@ -95,7 +100,7 @@ absl::StatusOr<Summary> SummarizeInMap(const Readback& readback,
   const absl::StatusOr<Eigen::Matrix3d> map_from_ray = MapFromRay(map_from_world, light);
   if (!map_from_ray.ok()) return map_from_ray.status();
   const absl::StatusOr<Receivers> receivers =
-      FindReceivers(readback, uint32_t{1} << light.shadow_bit, options.samples);
+      FindReceivers(readback, uint32_t{1} << light.shadow_bit, options.samples, options.stop);
   if (!receivers.ok()) return receivers.status();
   absl::StatusOr<PreparedLight> prepared = PrepareLight(*receivers, light, options);
   if (!prepared.ok()) return prepared.status();
@@ -105,12 +110,14 @@ absl::StatusOr<Summary> SummarizeInMap(const Readback& readback,
   const Eigen::Matrix3d map_from_normalized =
       *map_from_ray * prepared->summary.cover.normalized_from_ray.inverse();
   // Of those the map gives no footprint to, the cover is all that is left.
-  prepared->samples = SamplesInFront(prepared->samples, map_from_normalized.row(2));
+  prepared->samples = SamplesInFront(prepared->samples, map_from_normalized.row(2), options.stop);
+  if (absl::Status status = CheckStop(options.stop, light); !status.ok()) return status;
   prepared->samples.counts.used = static_cast<int64_t>(prepared->samples.size());
   if (prepared->samples.size() == 0) {
     return SummarizeSamples(prepared->samples, prepared->summary.cover, prepared->summary.metric);
   }
-  WeighIn(map_from_normalized, &*prepared);
+  WeighIn(map_from_normalized, options.stop, &*prepared);
+  if (absl::Status status = CheckStop(options.stop, light); !status.ok()) return status;
   return std::move(prepared->summary);
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "optimizer/stop.h"
+
 namespace lightfit {
 
 MetricWeights WeightsOf(Metric metric, double along_edge_share) {
@@ -34,17 +36,19 @@ Eigen::Matrix3d MetricTensor(const Sample& sample, const MetricWeights& weights)
 
 double Energy(const Eigen::Matrix3d& map_from_ray,
               const Samples& samples,
-              const MetricWeights& weights) {
-  return EnergyAndGradient(map_from_ray, samples, weights).energy;
+              const MetricWeights& weights,
+              const std::stop_token& stop) {
+  return EnergyAndGradient(map_from_ray, samples, weights, stop).energy;
 }
 
 EnergyGradient EnergyAndGradient(const Eigen::Matrix3d& map_from_ray,
                                  const Samples& samples,
-                                 const MetricWeights& weights) {
+                                 const MetricWeights& weights,
+                                 const std::stop_token& stop) {
   const Eigen::Vector3d p = map_from_ray.row(2);
   const Eigen::Matrix3d R = map_from_ray.inverse();
   EnergyGradient sum;
-  for (size_t i = 0; i < samples.size(); ++i) {
+  for (size_t i = 0; i < samples.size() && !IsStopped(stop, i); ++i) {
     const Sample sample = samples.At(i);
     const Eigen::Matrix3d G = MetricTensor(sample, weights);
     const double w = p.dot(sample.X);
@@ -61,7 +65,8 @@ EnergyGradient EnergyAndGradient(const Eigen::Matrix3d& map_from_ray,
 }
 
 FootprintStatistics ComputeFootprintStatistics(const Eigen::Matrix3d& map_from_ray,
-                                               const Samples& samples) {
+                                               const Samples& samples,
+                                               const std::stop_token& stop) {
   FootprintStatistics statistics;
   if (samples.size() == 0) return statistics;
   const Eigen::Vector3d p = map_from_ray.row(2);
@@ -69,6 +74,7 @@ FootprintStatistics ComputeFootprintStatistics(const Eigen::Matrix3d& map_from_r
   ScratchVector<double> footprints(samples.size());
   double sum_squared = 0.0, sum_weight = 0.0;
   for (size_t i = 0; i < samples.size(); ++i) {
+    if (IsStopped(stop, i)) return statistics;
     const Sample sample = samples.At(i);
     const double squared = 0.5 * (p.dot(sample.X) * sample.D * R12).squaredNorm();
     footprints[i] = std::sqrt(squared);

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <stop_token>
 
 #include "optimizer/fit_options.h"
 #include "optimizer/light_matrix.h"
@@ -37,9 +38,12 @@ Eigen::Matrix2d Footprint(const Eigen::Matrix3d& map_from_ray, const Sample& sam
 Eigen::Matrix3d MetricTensor(const Sample& sample, const MetricWeights& weights);
 
 // Sum over samples of weight w^2 (r1'G r1 + r2'G r2).   math.md (3), Chong & Gortler (6)
+//
+// All sums over samples are of no use once `stop` says so (optimizer/stop.h).
 double Energy(const Eigen::Matrix3d& map_from_ray,
               const Samples& samples,
-              const MetricWeights& weights);
+              const MetricWeights& weights,
+              const std::stop_token& stop = {});
 
 // The same and its gradient over the axis p = h3 with h1, h2 held fixed.   math.md (4)
 struct EnergyGradient {
@@ -48,10 +52,12 @@ struct EnergyGradient {
 };
 EnergyGradient EnergyAndGradient(const Eigen::Matrix3d& map_from_ray,
                                  const Samples& samples,
-                                 const MetricWeights& weights);
+                                 const MetricWeights& weights,
+                                 const std::stop_token& stop = {});
 
 // sqrt((|dS/du|^2 + |dS/dv|^2) / 2) of every sample: root mean square, median, 99 % and largest.
 FootprintStatistics ComputeFootprintStatistics(const Eigen::Matrix3d& map_from_ray,
-                                               const Samples& samples);
+                                               const Samples& samples,
+                                               const std::stop_token& stop = {});
 
 }  // namespace lightfit

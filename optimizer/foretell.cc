@@ -6,6 +6,7 @@
 
 #include "geometry/scratch.h"
 #include "optimizer/pixel_footprint.h"
+#include "optimizer/stop.h"
 
 namespace lightfit {
 
@@ -100,7 +101,8 @@ absl::StatusOr<double> ForetellWrongShare(const Readback& readback,
                                           const Light& light,
                                           const Eigen::Matrix4d& map_from_world,
                                           MapSize map,
-                                          const SampleOptions& options) {
+                                          const SampleOptions& options,
+                                          const std::stop_token& stop) {
   const absl::StatusOr<PixelFootprints> footprints =
       PixelFootprints::Create(readback, light, map_from_world, options);
   if (!footprints.ok()) return footprints.status();
@@ -110,6 +112,7 @@ absl::StatusOr<double> ForetellWrongShare(const Readback& readback,
   double sum = 0.0;
   int64_t num_looked_at = 0;
   for (int y = stride / 2; y < readback.height(); y += stride) {
+    if (absl::Status status = CheckStop(stop, light); !status.ok()) return status;
     for (int x = stride / 2; x < readback.width(); x += stride) {
       ++num_looked_at;
       const std::optional<PixelFootprint> pixel = footprints->At(x, y);

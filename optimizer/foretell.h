@@ -6,6 +6,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <stop_token>
 
 #include "absl/status/statusor.h"
 #include "geometry/clip.h"
@@ -24,11 +25,13 @@ namespace lightfit {
 //
 // In 0 ... 1. Compared with what exact ray casting measures the figure is right within a factor of
 // two or so from scene to scene, and ranks matrices on one image better than that
-// (docs/defaults.md). InvalidArgument for a read-back, light or matrix that cannot be used.
+// (docs/defaults.md). InvalidArgument for a read-back, light or matrix that cannot be used;
+// CancelledError once `stop` says so.
 absl::StatusOr<double> ForetellWrongShare(const Readback& readback,
                                           const Light& light,
                                           const Eigen::Matrix4d& map_from_world,
                                           MapSize map,
-                                          const SampleOptions& options = {});
+                                          const SampleOptions& options = {},
+                                          const std::stop_token& stop = {});
 
 }  // namespace lightfit

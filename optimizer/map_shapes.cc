@@ -10,6 +10,7 @@
 #include "optimizer/axis_search.h"
 #include "optimizer/fit.h"
 #include "optimizer/prepared_light.h"
+#include "optimizer/stop.h"
 
 namespace lightfit {
 
@@ -133,6 +134,7 @@ absl::StatusOr<Summary> SummarizeForAnyAspect(const Readback& readback,
     shapes = std::move(next_shapes);
     if (!gained) break;
   }
+  if (absl::Status status = CheckStop(options.stop, light); !status.ok()) return status;
   return summary;
 }
 

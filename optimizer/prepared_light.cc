@@ -10,6 +10,7 @@
 #include "absl/strings/str_format.h"
 #include "geometry/homography.h"
 #include "optimizer/l1_weights.h"
+#include "optimizer/stop.h"
 
 namespace lightfit {
 
@@ -114,7 +115,8 @@ absl::StatusOr<LightMatrix> LayMatrix(const SearchInputs& inputs,
   }
   matrix.samples = summary.counts;
   if (inputs.samples != nullptr && options.compute_statistics) {
-    matrix.footprint = ComputeFootprintStatistics(map_from_normalized, *inputs.samples);
+    matrix.footprint =
+        ComputeFootprintStatistics(map_from_normalized, *inputs.samples, options.stop);
   } else if (summary.counts.used > 0 && options.metric == Metric::kL2) {
     const double energy = summary.tensor.Energy(map_from_normalized);
     matrix.footprint.rms = std::sqrt(0.5 * energy / summary.total_weight);
@@ -127,13 +129,17 @@ absl::StatusOr<LightMatrix> LayMatrix(const SearchInputs& inputs,
 absl::StatusOr<PreparedLight> PrepareLight(const Receivers& receivers,
                                            const Light& light,
                                            const FitOptions& options) {
-  absl::StatusOr<RayCover> cover = CoverReceivers(receivers, light, options.cover);
+  absl::StatusOr<RayCover> cover = CoverReceivers(receivers, light, options.cover, options.stop);
   if (!cover.ok()) return cover.status();
   const MetricWeights metric = WeightsOf(options.metric, options.along_edge_share);
   PreparedLight prepared;
-  prepared.samples = SelectSamples(
-      receivers, light, cover->normalized_from_ray, /*with_edge_normals=*/metric.across_edge > 0.0);
-  prepared.summary = SummarizeSamples(prepared.samples, *cover, metric);
+  prepared.samples = SelectSamples(receivers,
+                                   light,
+                                   cover->normalized_from_ray,
+                                   /*with_edge_normals=*/metric.across_edge > 0.0,
+                                   options.stop);
+  prepared.summary = SummarizeSamples(prepared.samples, *cover, metric, options.stop);
+  if (absl::Status status = CheckStop(options.stop, light); !status.ok()) return status;
   return prepared;
 }
 
@@ -142,6 +148,7 @@ absl::StatusOr<LightMatrix> FitInputs(const SearchInputs& inputs,
                                       const FitOptions& options) {
   const Summary& summary = inputs.summary;
   const Light& light = inputs.light;
+  if (absl::Status status = CheckStop(options.stop, light); !status.ok()) return status;
   if (options.search != Search::kFocused && summary.counts.used < options.samples.min_samples) {
     return TooFewSamplesError(light, summary.counts, options.samples.min_samples);
   }
@@ -149,6 +156,7 @@ absl::StatusOr<LightMatrix> FitInputs(const SearchInputs& inputs,
   if (!outcome.ok()) return outcome.status();
   const Eigen::Matrix3d map_from_normalized = Unmirrored(outcome->result.fit.map_from_ray, map);
   absl::StatusOr<LightMatrix> matrix = LayMatrix(inputs, map_from_normalized, map, options);
+  if (absl::Status status = CheckStop(options.stop, light); !status.ok()) return status;
   if (!matrix.ok()) return matrix.status();
   matrix->energy = outcome->result.fit.energy;
   matrix->energy_start = outcome->energy_start;
@@ -170,13 +178,18 @@ absl::StatusOr<LightMatrix> MatrixOfMap(const SearchInputs& inputs,
                                         const FitOptions& options) {
   absl::StatusOr<LightMatrix> matrix =
       LayMatrix(inputs, Unmirrored(map_from_normalized, map), map, options);
-  if (!matrix.ok() || inputs.summary.counts.used == 0) return matrix;
-  matrix->energy =
-      IsL1(options.metric) && inputs.samples != nullptr
-          ? WeightsForL1(*inputs.samples, inputs.summary.metric, map_from_normalized).footprint_sum
-          : inputs.summary.tensor.Energy(map_from_normalized);
-  matrix->energy_start = matrix->energy;
-  matrix->stop_reason = StopReason::kNoSearch;
+  if (!matrix.ok()) return matrix;
+  if (inputs.summary.counts.used > 0) {
+    matrix->energy =
+        IsL1(options.metric) && inputs.samples != nullptr
+            ? WeightsForL1(
+                  *inputs.samples, inputs.summary.metric, map_from_normalized, options.stop)
+                  .footprint_sum
+            : inputs.summary.tensor.Energy(map_from_normalized);
+    matrix->energy_start = matrix->energy;
+    matrix->stop_reason = StopReason::kNoSearch;
+  }
+  if (absl::Status status = CheckStop(options.stop, inputs.light); !status.ok()) return status;
   return matrix;
 }
 

@@ -26,6 +26,8 @@ struct PreparedLight {
   Summary summary;
 };
 
+// Here and below: CancelledError once options.stop says so.
+
 // FailedPrecondition as CoverReceivers(). A light without any sample is a result.
 absl::StatusOr<PreparedLight> PrepareLight(const Receivers& receivers,
                                            const Light& light,

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <stop_token>
 
 #include "absl/status/statusor.h"
 #include "geometry/light.h"
@@ -50,10 +51,11 @@ struct Receivers {
 
 // Looks at the shadow bits in `light_mask` only. Pixels in the outermost rows and columns have no
 // central differences and never count as boundary. InvalidArgument when the read-back is not valid
-// or has no receiver at all.
+// or has no receiver at all; CancelledError once `stop` says so.
 absl::StatusOr<Receivers> FindReceivers(const Readback& readback,
                                         uint32_t light_mask,
-                                        const SampleOptions& options);
+                                        const SampleOptions& options,
+                                        const std::stop_token& stop = {});
 
 // Affine depth and its derivatives at an inner pixel: central differences where the surface
 // continues to both sides (SampleOptions::max_depth_bend). At an outline or a crease, where it does

@@ -64,6 +64,19 @@ class CeresCost final : public ceres::SizedCostFunction<18, 2> {
   const ReducedEnergyCost& cost_;
 };
 
+// Ceres would log a cost that fails at a point it has accepted, so that it is stopped from here.
+class StopCallback final : public ceres::IterationCallback {
+ public:
+  explicit StopCallback(const std::stop_token& stop) : stop_(stop) {}
+
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& /*summary*/) override {
+    return stop_.stop_requested() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  const std::stop_token& stop_;
+};
+
 }  // namespace
 
 Eigen::Vector2d AxisParameters(const AffineFit& fit) {
@@ -86,7 +99,7 @@ ReducedEnergyCost::ReducedEnergyCost(const Summary& summary,
 }
 
 std::optional<AffineFit> ReducedEnergyCost::FitAt(const Eigen::Vector2d& ab) const {
-  if (!ab.allFinite()) return std::nullopt;
+  if (problem_.stop.stop_requested() || !ab.allFinite()) return std::nullopt;
   for (const Eigen::Vector2d& ray : summary_.cover.hull) {
     if (!(ab.dot(ray) + 1.0 >= min_w_)) return std::nullopt;
   }
@@ -213,7 +226,10 @@ RefineResult RefineAxis(const Summary& summary,
   if (!parameters.allFinite() || !(start.energy > 0.0) || !std::isfinite(start.energy)) {
     return result;
   }
-  const ReducedEnergyCost cost(summary, problem, min_w, start.energy);
+  if (problem.stop.stop_requested()) return result;
+  AffineProblem solver_problem = problem;
+  if (refiner == Refiner::kCeres) solver_problem.stop = {};  // see StopCallback
+  const ReducedEnergyCost cost(summary, solver_problem, min_w, start.energy);
   if (!cost.FitAt(parameters).has_value()) return result;
 
   if (refiner == Refiner::kTinySolver) {
@@ -234,6 +250,8 @@ RefineResult RefineAxis(const Summary& summary,
     options.function_tolerance = kEnergyTolerance;
     options.parameter_tolerance = kStepTolerance;
     options.logging_type = ceres::SILENT;
+    StopCallback stop_callback(problem.stop);
+    options.callbacks = {&stop_callback};
     ceres::Solver::Summary ceres_summary;
     ceres::Solve(options, &ceres_problem, &ceres_summary);
     result.report = ceres_summary.BriefReport();

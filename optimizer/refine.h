@@ -38,7 +38,8 @@ class ReducedEnergyCost {
   // residuals are then large and finite, so that a solver that does not look steps back.
   bool operator()(const double* ab, double* residuals, double* jacobian) const;
 
-  // The fit at (a, b), or nothing where the axis cannot be used.
+  // The fit at (a, b), or nothing where the axis cannot be used, which is everywhere once the
+  // problem's stop says so.
   std::optional<AffineFit> FitAt(const Eigen::Vector2d& ab) const;
 
   // Derivative of the fit's energy over (a, b), as the Jacobian has it: pixels^2 per texel^2.

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <stop_token>
 
 #include "geometry/light.h"
 #include "geometry/scratch.h"
@@ -40,12 +41,16 @@ struct Samples {
 
 // The light's share of the receivers' boundary: those that face the light, are not edge-on to it or
 // to the eye. `normalized_from_ray` acts on RayFromWorld(light); the identity keeps light space.
+// Here and below: of no use once `stop` says so.
 Samples SelectSamples(const Receivers& receivers,
                       const Light& light,
                       const Eigen::Matrix3d& normalized_from_ray,
-                      bool with_edge_normals);
+                      bool with_edge_normals,
+                      const std::stop_token& stop = {});
 
 // Those with w = p.X > 0, in the order they had. `counts` are as they were.
-Samples SamplesInFront(const Samples& samples, const Eigen::RowVector3d& axis);
+Samples SamplesInFront(const Samples& samples,
+                       const Eigen::RowVector3d& axis,
+                       const std::stop_token& stop = {});
 
 }  // namespace lightfit

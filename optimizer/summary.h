@@ -10,6 +10,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <stop_token>
 
 #include "optimizer/cover.h"
 #include "optimizer/footprint.h"
@@ -65,10 +66,11 @@ struct Summary {
 };
 
 // One vectorised pass over the samples, whose rays must be in the cover's coordinates. The result
-// does not depend on the processor's vector width.
+// does not depend on the processor's vector width. Of no use once `stop` says so.
 Summary SummarizeSamples(const Samples& samples,
                          const RayCover& cover,
-                         const MetricWeights& metric);
+                         const MetricWeights& metric,
+                         const std::stop_token& stop = {});
 
 template <typename Scalar>
 Eigen::Matrix<Scalar, 6, 6> SymmetricCongruence(const Eigen::Matrix<Scalar, 3, 3>& m) {

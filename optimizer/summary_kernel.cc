@@ -110,10 +110,11 @@ void AccumulateSimd(const double* const* arrays,
                     const double* edge_normal_x,
                     const double* edge_normal_y,
                     const MetricWeights& metric,
-                    size_t count,
+                    size_t begin,
+                    size_t end,
                     double* sums) {
   const size_t lanes = hn::Lanes(Tag());
-  for (size_t i = 0; i < count; i += LIGHTFIT_SUMMARY_LANES) {
+  for (size_t i = begin; i < end; i += LIGHTFIT_SUMMARY_LANES) {
     for (size_t lane = 0; lane < LIGHTFIT_SUMMARY_LANES; lane += lanes) {
       AccumulateLanes(arrays, matrix, edge_normal_x, edge_normal_y, metric, i + lane, sums + lane);
     }
@@ -131,7 +132,9 @@ namespace lightfit::internal {
 
 HWY_EXPORT(AccumulateSimd);
 
-Eigen::Matrix<double, 6, 6> AccumulateTensor(const Samples& samples, const MetricWeights& metric) {
+Eigen::Matrix<double, 6, 6> AccumulateTensor(const Samples& samples,
+                                             const MetricWeights& metric,
+                                             const std::stop_token& stop) {
   constexpr size_t kLanes = LIGHTFIT_SUMMARY_LANES;
   alignas(64) double sums[36 * kLanes] = {};
   const bool edges = metric.across_edge != 0.0 && samples.has_edge_normals();
@@ -144,8 +147,18 @@ Eigen::Matrix<double, 6, 6> AccumulateTensor(const Samples& samples, const Metri
   const double* normal_x = edges ? samples.edge_normal_x.data() : nullptr;
   const double* normal_y = edges ? samples.edge_normal_y.data() : nullptr;
   const size_t whole = samples.size() / kLanes * kLanes;
-  HWY_DYNAMIC_DISPATCH(AccumulateSimd)
-  (arrays, samples.ray_from_screen.data(), normal_x, normal_y, metric, whole, sums);
+  constexpr size_t kBlock = 1024 * kLanes;  // some ten microseconds
+  for (size_t begin = 0; begin < whole && !stop.stop_requested(); begin += kBlock) {
+    HWY_DYNAMIC_DISPATCH(AccumulateSimd)
+    (arrays,
+     samples.ray_from_screen.data(),
+     normal_x,
+     normal_y,
+     metric,
+     begin,
+     std::min(begin + kBlock, whole),
+     sums);
+  }
 
   // The last few samples go through the same kernel, padded with a copy of weight zero.
   const size_t rest = samples.size() - whole;
@@ -166,6 +179,7 @@ Eigen::Matrix<double, 6, 6> AccumulateTensor(const Samples& samples, const Metri
      edges ? padded[6] : nullptr,
      edges ? padded[7] : nullptr,
      metric,
+     0,
      kLanes,
      sums);
   }

@@ -16,6 +16,7 @@
 #include "optimizer/footprint.h"
 #include "optimizer/map_shapes.h"
 #include "optimizer/prepared_light.h"
+#include "optimizer/stop.h"
 
 namespace lightfit {
 
@@ -25,10 +26,13 @@ namespace {
 using TryFunction = std::function<absl::StatusOr<ToleranceMap>(MapSize)>;
 
 // Footprints of all samples, read-back pixels per texel; 0 behind the light's plane w = 0, where a
-// lit neighbour of what is covered may lie: look-ups there find light.
-ScratchVector<double> FootprintsOf(const Eigen::Matrix3d& map_from_ray, const Samples& samples) {
+// lit neighbour of what is covered may lie: look-ups there find light. Of no use once `stop` says
+// so.
+ScratchVector<double> FootprintsOf(const Eigen::Matrix3d& map_from_ray,
+                                   const Samples& samples,
+                                   const std::stop_token& stop) {
   ScratchVector<double> footprints(samples.size(), 0.0);
-  for (size_t i = 0; i < samples.size(); ++i) {
+  for (size_t i = 0; i < samples.size() && !IsStopped(stop, i); ++i) {
     if (!(map_from_ray.row(2).dot(samples.At(i).X) > 0.0)) continue;
     footprints[i] = std::sqrt(0.5) * Footprint(map_from_ray, samples.At(i)).norm();
   }
@@ -107,7 +111,7 @@ absl::StatusOr<Summary> SummaryFor(Tolerance::Kind kind,
       const absl::StatusOr<Eigen::Matrix3d> map_from_ray =
           MapFromNormalized(*fit, light, summary.cover);
       if (!map_from_ray.ok()) return map_from_ray.status();
-      const ScratchVector<double> footprints = FootprintsOf(*map_from_ray, samples);
+      const ScratchVector<double> footprints = FootprintsOf(*map_from_ray, samples, options.stop);
       const double figure = FigureOf(kind, footprints);
       if (figure < least) {
         least = figure;
@@ -116,7 +120,8 @@ absl::StatusOr<Summary> SummaryFor(Tolerance::Kind kind,
       const Reweighting reweighting =
           round < rounds_towards_many ? Reweighting::kTowardsMany : Reweighting::kTowardsFew;
       samples.weight = Reweighted(reweighting, samples.weight, footprints, figure);
-      summary = SummarizeSamples(samples, prepared.summary.cover, prepared.summary.metric);
+      summary =
+          SummarizeSamples(samples, prepared.summary.cover, prepared.summary.metric, options.stop);
     }
   }
   return best;
@@ -149,7 +154,7 @@ absl::StatusOr<ToleranceMap> SmallestWithin(const Summary& summary,
                                             const TryFunction& try_size) {
   const absl::StatusOr<MapShapes> shapes = FindMapShapes(summary, light, options);
   if (!shapes.ok()) return shapes.status();
-  const std::vector<RatedSize> sizes = RateSizes(*shapes, /*weight=*/1.0, rules);
+  const std::vector<RatedSize> sizes = RateSizes(*shapes, /*weight=*/1.0, rules, options.stop);
   absl::StatusOr<ToleranceMap> best = try_size(sizes.back().map);
   if (!best.ok()) return best;
   best->is_met = best->reached_px <= tolerance.limit_px;
@@ -208,7 +213,7 @@ absl::StatusOr<ToleranceMap> MeetTolerance(const Readback& readback,
   if (absl::Status status = Validate(tolerance, rules, squares); !status.ok()) return status;
   if (absl::Status status = ValidateLight(light); !status.ok()) return status;
   const absl::StatusOr<Receivers> receivers =
-      FindReceivers(readback, uint32_t{1} << light.shadow_bit, options.samples);
+      FindReceivers(readback, uint32_t{1} << light.shadow_bit, options.samples, options.stop);
   if (!receivers.ok()) return receivers.status();
   const absl::StatusOr<PreparedLight> prepared = PrepareLight(*receivers, light, squares);
   if (!prepared.ok()) return prepared.status();
@@ -224,15 +229,18 @@ absl::StatusOr<ToleranceMap> MeetTolerance(const Readback& readback,
       const absl::StatusOr<Eigen::Matrix3d> map_from_ray =
           MapFromNormalized(*matrix, light, summary.cover);
       if (!map_from_ray.ok()) return map_from_ray.status();
-      const ScratchVector<double> footprints = FootprintsOf(*map_from_ray, prepared->samples);
+      const ScratchVector<double> footprints =
+          FootprintsOf(*map_from_ray, prepared->samples, options.stop);
       const double figure = tolerance.kind == Tolerance::Kind::kRms
                                 ? RmsOf(footprints, prepared->samples.weight)
                                 : FigureOf(tolerance.kind, footprints);
       if (options.compute_statistics) {
-        matrix->footprint = ComputeFootprintStatistics(*map_from_ray, prepared->samples);
+        matrix->footprint =
+            ComputeFootprintStatistics(*map_from_ray, prepared->samples, options.stop);
         // Its rank is rounded there, where a promise counts up.
         if (tolerance.kind == Tolerance::Kind::kP99) matrix->footprint.p99 = figure;
       }
+      if (absl::Status status = CheckStop(options.stop, light); !status.ok()) return status;
       ToleranceMap trial;
       trial.reached_px = figure * tolerance.image_scale;
       trial.num_samples = static_cast<int64_t>(

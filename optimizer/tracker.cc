@@ -14,6 +14,7 @@
 #include "optimizer/axis_search.h"
 #include "optimizer/fit.h"
 #include "optimizer/prepared_light.h"
+#include "optimizer/stop.h"
 
 namespace lightfit {
 
@@ -294,8 +295,10 @@ TrackedMatrices Tracker::Update(const Readback& readback,
   for (const Light& light : lights) {
     if (ValidateLight(light).ok()) light_mask |= uint32_t{1} << light.shadow_bit;
   }
+  const std::stop_token& stop = options_.fit.stop;
+  if (stop.stop_possible()) states_before_ = states_;
   const absl::StatusOr<Receivers> receivers =
-      status.ok() ? FindReceivers(readback, light_mask, options_.fit.samples) : status;
+      status.ok() ? FindReceivers(readback, light_mask, options_.fit.samples, stop) : status;
   for (size_t i = 0; i < lights.size(); ++i) {
     const Light& light = lights[i];
     // States stand in the order of the lights, so that those of one frame are mostly in place.
@@ -318,6 +321,10 @@ TrackedMatrices Tracker::Update(const Readback& readback,
     }
   }
   states_.resize(lights.size());
+  if (stop.stop_requested()) {
+    states_.swap(states_before_);
+    for (size_t i = 0; i < lights.size(); ++i) results[i] = CheckStop(stop, lights[i]);
+  }
   return results;
 }
 

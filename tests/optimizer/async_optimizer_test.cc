@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstring>
+#include <stop_token>
 #include <thread>
 #include <utility>
 
@@ -207,6 +208,30 @@ TEST(AsyncOptimizer, WakesUpAndEndsAfterALongPause) {
     EXPECT_EQ(RunFrame(optimizer, walk.views[frame - 1], walk.lights, frame).num_lights, 2);
   }
   std::this_thread::sleep_for(kPause);
+}
+
+TEST(AsyncOptimizer, EndsInTheMiddleOfAFrameThatWouldTakeHours) {
+  const BoxWalk walk(/*seed=*/23, /*num_lights=*/2, /*num_views=*/1, 48, 48);
+  TrackerOptions options;
+  options.fit.grid_directions = 1'000'000'000;
+  for (const int milliseconds : {0, 1, 10, 100}) {
+    AsyncOptimizer optimizer = StartOptimizer(options);
+    Fill(walk.views[0], walk.lights, 1, &optimizer.Lend());
+    optimizer.Submit();
+    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+    EXPECT_EQ(optimizer.counts().done, 0);
+    EXPECT_EQ(optimizer.Poll(), nullptr);
+  }
+}
+
+TEST(AsyncOptimizer, StopOfItsOptionsDoesNotCount) {
+  const BoxWalk walk(/*seed=*/25, /*num_lights=*/1, /*num_views=*/1, 48, 48);
+  std::stop_source stopped;
+  stopped.request_stop();
+  TrackerOptions options;
+  options.fit.stop = stopped.get_token();
+  AsyncOptimizer optimizer = StartOptimizer(options);
+  EXPECT_THAT(RunFrame(optimizer, walk.views[0], walk.lights, 1).lights[0].status, IsOk());
 }
 
 TEST(AsyncOptimizer, EndsAtAnyMomentAndCanBeMovedWhileItWorks) {
