@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
@@ -10,7 +11,6 @@
 #include "cli/fit_inputs.h"
 #include "cli/suggest.h"
 #include "cli/summary_inputs.h"
-#include "optimizer/map_shapes.h"
 
 namespace lightfit {
 namespace {
@@ -37,18 +37,20 @@ absl::StatusOr<std::vector<double>> WeightsOf(const std::map<std::string, double
 absl::Status ReadReadbackSource(const AllocateFlags& flags, AllocateInputs* inputs) {
   absl::StatusOr<FitInputs> fit = ReadFitInputs(flags.fit);
   if (!fit.ok()) return fit.status();
-  inputs->lights = std::move(fit->lights);
-  inputs->options = flags.fit.options;
+  inputs->task.lights = std::move(fit->lights);
+  inputs->task.options = flags.fit.options;
   if (flags.image.has_value()) {
     const Camera& camera = fit->file.camera;
     inputs->image_scale = std::max(static_cast<double>(flags.image->width) / camera.width,
                                    static_cast<double>(flags.image->height) / camera.height);
   }
   inputs->readback = std::move(fit->file);
+  inputs->task.readback = inputs->readback->View();
+  inputs->task.light_status = inputs->readback->light_status;
   return absl::OkStatus();
 }
 
-absl::Status ReadSummarySource(const AllocateFlags& flags, AllocateInputs* inputs) {
+absl::Status ReadSummarySource(const AllocateFlags& flags, AllocationTask* task) {
   absl::StatusOr<SummarySet> summaries = ReadSummaries(flags.fit.summary_paths, flags.fit.only);
   if (!summaries.ok()) return summaries.status();
   const absl::StatusOr<FitOptions> options = OptionsFor(flags.fit, summaries->options);
@@ -60,9 +62,9 @@ absl::Status ReadSummarySource(const AllocateFlags& flags, AllocateInputs* input
                      ", and a tolerance wants squares; summarise the frames again with --metric "
                      "l2, or give a read-back in place of --summary"));
   }
-  for (const LightSummary& light : summaries->lights) inputs->lights.push_back(light.total.light);
-  inputs->options = *options;
-  inputs->summaries = *std::move(summaries);
+  for (const LightSummary& light : summaries->lights) task->lights.push_back(light.total.light);
+  task->options = *options;
+  task->summaries = *std::move(summaries);
   return absl::OkStatus();
 }
 
@@ -70,34 +72,18 @@ absl::Status ReadSummarySource(const AllocateFlags& flags, AllocateInputs* input
 
 absl::StatusOr<AllocateInputs> ReadAllocateInputs(const AllocateFlags& flags) {
   AllocateInputs inputs;
+  AllocationTask& task = inputs.task;
   absl::Status status = flags.fit.summary_paths.empty() ? ReadReadbackSource(flags, &inputs)
-                                                        : ReadSummarySource(flags, &inputs);
+                                                        : ReadSummarySource(flags, &task);
   if (!status.ok()) return status;
-  absl::StatusOr<std::vector<double>> weights = WeightsOf(flags.weights, inputs.lights);
+  absl::StatusOr<std::vector<double>> weights = WeightsOf(flags.weights, task.lights);
   if (!weights.ok()) return weights.status();
-  inputs.weights = *std::move(weights);
+  task.weights = *std::move(weights);
+  task.rules = flags.rules;
+  task.budget_texels = flags.budget_texels;
+  task.tolerance = flags.tolerance;
+  if (task.tolerance.has_value()) task.tolerance->image_scale = inputs.image_scale;
   return inputs;
-}
-
-std::vector<AllocationLight> SummarizeLights(const AllocateInputs& inputs, Progress* progress) {
-  std::vector<AllocationLight> lights;
-  for (size_t i = 0; i < inputs.lights.size(); ++i) {
-    const Light& light = inputs.lights[i];
-    progress->Begin(absl::StrCat("summing up ", light.name));
-    AllocationLight entry;
-    entry.light = light;
-    entry.weight = inputs.weights[i];
-    if (inputs.summaries.has_value()) {
-      entry.summary = SummaryOf(inputs.summaries->lights[i]);
-    } else if (const absl::Status& status = inputs.readback->light_status[i]; status.ok()) {
-      entry.summary = SummarizeForAnyAspect(inputs.readback->View(), light, inputs.options);
-    } else {
-      entry.summary = status;
-    }
-    lights.push_back(std::move(entry));
-    progress->Advance();
-  }
-  return lights;
 }
 
 }  // namespace lightfit

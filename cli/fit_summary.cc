@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "calls/fit_summary.h"
 #include "cli/exit_code.h"
 #include "cli/fit_report.h"
 #include "cli/number.h"
@@ -12,7 +13,6 @@
 #include "cli/summary_inputs.h"
 #include "cli/table.h"
 #include "io/result_json.h"
-#include "optimizer/fit.h"
 
 namespace lightfit {
 namespace {
@@ -123,9 +123,7 @@ int RunFitSummary(const FitFlags& flags) {
     const Clock::time_point start = Clock::now();
     SummaryFit& fit = fits.emplace_back();
     fit.light = &light;
-    const absl::StatusOr<Summary> summary = SummaryOf(light);
-    fit.matrix =
-        summary.ok() ? Fit(*summary, light.total.light, flags.map, *options) : summary.status();
+    fit.matrix = FitSummary(light, flags.map, *options);
     fit.time_ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
   }
   if (!flags.quiet) {

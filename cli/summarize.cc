@@ -12,6 +12,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_replace.h"
+#include "calls/fit_summary.h"
 #include "cli/exit_code.h"
 #include "cli/fit_inputs.h"
 #include "cli/number.h"

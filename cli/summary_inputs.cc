@@ -5,6 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "calls/fit_summary.h"
 #include "cli/choices.h"
 #include "cli/fit_inputs.h"
 #include "io/text_file.h"
@@ -61,31 +62,7 @@ absl::Status CheckHeld(const FitFlags& flags, const FitOptions& held) {
 
 absl::StatusOr<FitOptions> OptionsFor(const FitFlags& flags, const FitOptions& held) {
   if (absl::Status status = CheckHeld(flags, held); !status.ok()) return status;
-  FitOptions options = flags.options;
-  options.samples = held.samples;
-  options.samples.min_samples = flags.options.samples.min_samples;
-  options.metric = held.metric;
-  options.along_edge_share = held.along_edge_share;
-  options.cover = held.cover;
-  options.compute_statistics = false;  // percentiles need the samples
-  if (absl::Status status = ValidateFitOptions(options); !status.ok()) return status;
-  return options;
-}
-
-absl::StatusOr<Summary> SummaryOf(const LightSummary& light) {
-  if (light.total.num_frames == 0) {
-    return absl::FailedPreconditionError(MissingFramesText(light));
-  }
-  return SummaryOfTotal(light.total);
-}
-
-std::string MissingFramesText(const LightSummary& light) {
-  if (light.num_frames_without == 0) return "";
-  return absl::StrFormat("light \"%s\": nothing of it in %d of %d frames, such as %s",
-                         light.name(),
-                         light.num_frames_without,
-                         light.num_frames(),
-                         light.failure.message());
+  return OptionsForSummaries(flags.options, held);
 }
 
 std::string SourceText(std::vector<std::string> paths) {
@@ -95,14 +72,6 @@ std::string SourceText(std::vector<std::string> paths) {
 
 std::string TitleText(const std::vector<std::string>& paths) {
   return paths.size() == 1 ? paths.front() : absl::StrCat(paths.size(), " summaries");
-}
-
-void ClearReadbackFigures(v1::ReadbackInfo* readback,
-                          google::protobuf::RepeatedPtrField<v1::LightResult>* lights) {
-  readback->clear_camera();  // each frame had its own
-  for (v1::LightResult& light : *lights) {
-    if (light.footprint().rms() == 0.0) light.clear_footprint();  // it needs the samples
-  }
 }
 
 }  // namespace lightfit

@@ -1,5 +1,6 @@
 #include "io/allocation_json.h"
 
+#include "absl/strings/str_format.h"
 #include "io/proto_json.h"
 #include "io/text_file.h"
 
@@ -34,9 +35,49 @@ v1::MapSizeRules RulesToProto(const MapSizeRules& rules) {
   return proto;
 }
 
+// What a field of 0 means.
+int SideOr(int side, int default_side) { return side == 0 ? default_side : side; }
+
 int64_t TexelsOf(const LightFit& fit) { return fit.matrix.ok() ? TexelsOf(fit.matrix->map) : 0; }
 
 }  // namespace
+
+absl::StatusOr<Tolerance> ToleranceFromProto(const v1::Tolerance& proto) {
+  Tolerance tolerance;
+  switch (proto.kind()) {
+    case v1::Tolerance::KIND_RMS:
+      tolerance.kind = Tolerance::Kind::kRms;
+      break;
+    case v1::Tolerance::KIND_P99:
+      tolerance.kind = Tolerance::Kind::kP99;
+      break;
+    case v1::Tolerance::KIND_WORST:
+      tolerance.kind = Tolerance::Kind::kWorst;
+      break;
+    default:
+      return absl::InvalidArgumentError(absl::StrFormat(
+          "tolerance.kind = %d, want KIND_RMS, KIND_P99 or KIND_WORST", proto.kind()));
+  }
+  tolerance.limit_px = proto.limit_px();
+  if (proto.image_scale() != 0.0) tolerance.image_scale = proto.image_scale();
+  if (absl::Status status = ValidateTolerance(tolerance); !status.ok()) return status;
+  if (tolerance.image_scale > kMaxImageScale) {
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "tolerance.image_scale = %g, want at most %g", tolerance.image_scale, kMaxImageScale));
+  }
+  return tolerance;
+}
+
+absl::StatusOr<MapSizeRules> MapSizeRulesFromProto(const v1::MapSizeRules& proto,
+                                                   double margin_texels) {
+  MapSizeRules rules;
+  rules.multiple = SideOr(proto.multiple(), rules.multiple);
+  rules.powers_of_two = proto.powers_of_two();
+  rules.min_side = SideOr(proto.min_side(), rules.min_side);
+  rules.max_side = SideOr(proto.max_side(), rules.max_side);
+  if (absl::Status status = ValidateMapSizeRules(rules, margin_texels); !status.ok()) return status;
+  return rules;
+}
 
 int64_t AllocationReport::Texels() const {
   int64_t texels = 0;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "absl/status/statusor.h"
 #include "absl/types/optional.h"
 #include "io/result_json.h"
 #include "lightfit/v1/allocation.pb.h"
@@ -45,6 +46,15 @@ struct AllocationReport {
   // The share of the budget, or of all maps together, that light i has; 0 ... 1.
   double Share(size_t i) const;
 };
+
+// Footprints are finite numbers of a read-back's pixels, and stay so.
+inline constexpr double kMaxImageScale = 1e6;
+
+// InvalidArgument names the field: "tolerance.limit_px = ...", "rules.min_side = ...". An
+// image_scale of 0 is 1; sides and multiples that are 0 are the defaults.
+absl::StatusOr<Tolerance> ToleranceFromProto(const v1::Tolerance& proto);
+absl::StatusOr<MapSizeRules> MapSizeRulesFromProto(const v1::MapSizeRules& proto,
+                                                   double margin_texels);
 
 v1::Allocation AllocationToProto(const AllocationReport& report);
 

@@ -1,7 +1,9 @@
 #include "io/shot_proto.h"
 
+#include <cmath>
 #include <utility>
 
+#include "absl/strings/str_format.h"
 #include "io/matrix_proto.h"
 
 namespace lightfit {
@@ -15,6 +17,31 @@ v1::TrackerSettings TrackerSettingsToProto(const TrackerOptions& options) {
   proto.set_cover_margin_percent(options.cover_margin_percent);
   proto.set_hard_validity(options.hard_validity);
   return proto;
+}
+
+absl::StatusOr<TrackerOptions> TrackerSettingsFromProto(const v1::TrackerSettings& proto) {
+  TrackerOptions options;
+  switch (proto.keeps()) {
+    case v1::TRACKER_KEEPS_MATRIX:
+      options.keeps = TrackerOptions::Keeps::kMatrix;
+      break;
+    case v1::TRACKER_KEEPS_AXIS:
+      options.keeps = TrackerOptions::Keeps::kAxis;
+      break;
+    default:
+      return absl::InvalidArgumentError(absl::StrFormat(
+          "tracker.keeps = %d, want TRACKER_KEEPS_MATRIX or TRACKER_KEEPS_AXIS", proto.keeps()));
+  }
+  if (!std::isfinite(proto.replace_below())) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("tracker.replace_below = %g, want a number", proto.replace_below()));
+  }
+  options.replace_below = proto.replace_below();
+  options.update_every_frames = proto.update_every_frames();
+  options.cover_margin_percent = proto.cover_margin_percent();
+  options.hard_validity = proto.hard_validity();
+  if (absl::Status status = ValidateTrackerOptions(options); !status.ok()) return status;
+  return options;
 }
 
 v1::TrackerAction TrackerActionToProto(TrackerAction action) {

@@ -19,6 +19,10 @@ namespace lightfit {
 // Without TrackerOptions::fit, which is FitResult::options.
 v1::TrackerSettings TrackerSettingsToProto(const TrackerOptions& options);
 
+// Every field as it is; TrackerOptions::fit stays the default. InvalidArgument names the field
+// whose value is out of range or not known to this version.
+absl::StatusOr<TrackerOptions> TrackerSettingsFromProto(const v1::TrackerSettings& proto);
+
 v1::TrackerAction TrackerActionToProto(TrackerAction action);
 
 v1::TrackedState TrackedStateToProto(const TrackedState& state);

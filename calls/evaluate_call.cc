@@ -1,0 +1,127 @@
+#include "calls/evaluate_call.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
+#include "calls/message_text.h"
+#include "calls/pixel_buffer.h"
+#include "calls/request_fields.h"
+#include "calls/request_lights.h"
+#include "calls/request_options.h"
+#include "io/camera_file.h"
+#include "io/matrix_proto.h"
+#include "io/options_proto.h"
+#include "io/proto_json.h"
+#include "io/result_json.h"
+#include "io/text_file.h"
+#include "optimizer/evaluate.h"
+
+namespace lightfit {
+namespace {
+
+std::string NamesText(const std::vector<RequestLight>& lights) {
+  return absl::StrJoin(lights, ", ", [](std::string* out, const RequestLight& light) {
+    absl::StrAppend(out, Quoted(light.light.name));
+  });
+}
+
+absl::StatusOr<Light> LightNamed(const std::string& name, const std::vector<RequestLight>& lights) {
+  const auto found = std::find_if(lights.begin(), lights.end(), [&name](const RequestLight& light) {
+    return light.light.name == name;
+  });
+  if (found == lights.end()) {
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "light = %s: there is no such light, want one of %s", Quoted(name), NamesText(lights)));
+  }
+  if (!found->status.ok()) return found->status;
+  return found->light;
+}
+
+absl::StatusOr<Eigen::Matrix4d> MapFromWorldOf(const v1::CandidateMatrix& candidate, MapSize map) {
+  if (candidate.has_map_from_world()) {
+    return MatrixFromProto(candidate.map_from_world(), "map_from_world");
+  }
+  if (!candidate.has_clip_from_world()) {
+    return absl::InvalidArgumentError("want map_from_world or clip_from_world");
+  }
+  const absl::StatusOr<Eigen::Matrix4d> clip_from_world =
+      MatrixFromProto(candidate.clip_from_world(), "clip_from_world");
+  if (!clip_from_world.ok()) return clip_from_world.status();
+  const absl::StatusOr<ClipConvention> clip = ClipOfRequest(candidate);
+  if (!clip.ok()) return clip.status();
+  return Eigen::Matrix4d(ClipFromMap(map, *clip).inverse() * *clip_from_world);
+}
+
+absl::StatusOr<v1::Evaluation> Evaluate(const v1::CandidateMatrix& candidate,
+                                        const std::vector<RequestLight>& lights,
+                                        const Readback& readback,
+                                        const FitOptions& options) {
+  const absl::StatusOr<Light> light = LightNamed(candidate.light(), lights);
+  if (!light.ok()) return light.status();
+  const absl::StatusOr<MapSize> map = MapSizeOfRequest(candidate.map(), options);
+  if (!map.ok()) return map.status();
+  const absl::StatusOr<Eigen::Matrix4d> map_from_world = MapFromWorldOf(candidate, *map);
+  if (!map_from_world.ok()) return map_from_world.status();
+  const absl::StatusOr<MatrixFigures> figures =
+      EvaluateMatrix(readback, *light, *map_from_world, *map, options);
+  if (!figures.ok()) return figures.status();
+  v1::Evaluation evaluation;
+  evaluation.set_energy(figures->energy);
+  *evaluation.mutable_footprint() =
+      FootprintToProto(figures->footprint, options.compute_statistics);
+  *evaluation.mutable_samples() = SampleCountsToProto(figures->samples);
+  evaluation.set_num_behind(figures->num_behind);
+  evaluation.set_wrong_share(figures->wrong_share);
+  if (absl::Status status = CheckFinite(evaluation, "evaluation"); !status.ok()) return status;
+  return evaluation;
+}
+
+}  // namespace
+
+absl::StatusOr<v1::EvaluateResult> AnswerEvaluate(const v1::EvaluateRequest& request,
+                                                  const CallContext& context) {
+  if (request.matrices().empty()) {
+    return absl::InvalidArgumentError("matrices: none, want at least one");
+  }
+  if (request.matrices_size() > context.limits.max_matrices) {
+    return absl::ResourceExhaustedError(
+        absl::StrFormat("matrices: %d of them, and this server takes at most %d; send several "
+                        "requests",
+                        request.matrices_size(),
+                        context.limits.max_matrices));
+  }
+  const absl::StatusOr<std::vector<RequestLight>> lights = LightsOfRequest(request.lights());
+  if (!lights.ok()) return lights.status();
+  const absl::StatusOr<FitOptions> options = OptionsOfRequest(request.options(), context);
+  if (!options.ok()) return options.status();
+  const absl::StatusOr<ReadbackView> readback =
+      ReadbackView::Of(request.readback(), request.lights_size(), context.limits);
+  if (!readback.ok()) return readback.status();
+
+  v1::EvaluateResult result;
+  for (int i = 0; i < request.matrices_size(); ++i) {
+    const v1::CandidateMatrix& candidate = request.matrices(i);
+    absl::StatusOr<v1::Evaluation> evaluation =
+        Evaluate(candidate, *lights, readback->view(), *options);
+    if (context.stop.stop_requested()) return StoppedError();
+    v1::Evaluation& entry = *result.add_evaluations();
+    if (evaluation.ok()) entry = *evaluation;
+    entry.set_light(candidate.light());
+    const absl::Status status = InFile(absl::StrCat("matrices[", i, "]"), evaluation.status());
+    entry.mutable_status()->set_code(static_cast<int>(status.code()));
+    entry.mutable_status()->set_message(Utf8Text(status.message()));
+  }
+  result.mutable_readback()->set_source(request.readback().source());
+  const Readback& view = readback->view();
+  *result.mutable_readback()->mutable_camera() = CameraToProto(view.camera, view.depth_kind);
+  *result.mutable_options() = FitOptionsToProto(*options);
+  if (absl::Status status = CheckFinite(result, "result"); !status.ok()) return status;
+  return result;
+}
+
+}  // namespace lightfit

@@ -1,0 +1,82 @@
+#include "calls/fit_call.h"
+
+#include <utility>
+#include <vector>
+
+#include "calls/finished_result.h"
+#include "calls/pixel_buffer.h"
+#include "calls/request_fields.h"
+#include "calls/request_lights.h"
+#include "calls/request_options.h"
+#include "io/result_json.h"
+#include "optimizer/evaluate.h"
+#include "optimizer/fit.h"
+
+namespace lightfit {
+namespace {
+
+// Fits the lights that can be used, all at once; the others keep their status.
+std::vector<LightFit> FitRequestLights(const std::vector<RequestLight>& lights,
+                                       const Readback& readback,
+                                       MapSize map,
+                                       const FitOptions& options) {
+  std::vector<Light> usable;
+  for (const RequestLight& light : lights) {
+    if (light.status.ok()) usable.push_back(light.light);
+  }
+  LightMatrices matrices = FitLights(readback, usable, map, options);
+  std::vector<LightFit> fits;
+  size_t next = 0;
+  for (const RequestLight& light : lights) {
+    LightFit& fit = fits.emplace_back();
+    fit.light = light.light;
+    fit.matrix = light.status.ok() ? std::move(matrices[next++]) : light.status;
+  }
+  return fits;
+}
+
+void Foretell(const Readback& readback, const FitOptions& options, LightFit* fit) {
+  if (!fit->matrix.ok()) return;
+  const absl::StatusOr<MatrixFigures> figures =
+      EvaluateMatrix(readback, fit->light, fit->matrix->map_from_world, fit->matrix->map, options);
+  if (figures.ok()) fit->wrong_share = figures->wrong_share;
+}
+
+}  // namespace
+
+absl::StatusOr<v1::FitResult> AnswerFit(const v1::FitRequest& request, const CallContext& context) {
+  const absl::StatusOr<ReadbackView> readback =
+      ReadbackView::Of(request.readback(), request.lights_size(), context.limits);
+  if (!readback.ok()) return readback.status();
+  return AnswerFit(request, readback->view(), context);
+}
+
+absl::StatusOr<v1::FitResult> AnswerFit(const v1::FitRequest& request,
+                                        const Readback& readback,
+                                        const CallContext& context) {
+  const absl::StatusOr<std::vector<RequestLight>> lights = LightsOfRequest(request.lights());
+  if (!lights.ok()) return lights.status();
+  const absl::StatusOr<FitOptions> options = OptionsOfRequest(request.options(), context);
+  if (!options.ok()) return options.status();
+  const absl::StatusOr<MapSize> map = MapSizeOfRequest(request.map(), *options);
+  if (!map.ok()) return map.status();
+  const absl::StatusOr<ClipConvention> clip = ClipOfRequest(request);
+  if (!clip.ok()) return clip.status();
+  if (absl::Status status = ValidateReadback(readback); !status.ok()) return status;
+
+  FitReport report;
+  report.source = request.readback().source();
+  report.camera = readback.camera;
+  report.depth_kind = readback.depth_kind;
+  report.options = *options;
+  report.map = *map;
+  report.clip = *clip;
+  report.lights = FitRequestLights(*lights, readback, *map, *options);
+  if (request.foretell_wrong()) {
+    for (LightFit& fit : report.lights) Foretell(readback, *options, &fit);
+  }
+  if (context.stop.stop_requested()) return StoppedError();
+  return FinishedResult(report, *lights);
+}
+
+}  // namespace lightfit

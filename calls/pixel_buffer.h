@@ -1,0 +1,95 @@
+// calls/pixel_buffer.h
+//
+// The pixels of a read-back that arrive piece by piece, or in a form that has to be converted.
+// In:   the header of a v1::Readback (camera and formats), then pieces of whole values.
+// Out:  a Readback of float depth and shadow bits, refused as soon as a piece does not belong.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "calls/call_context.h"
+#include "geometry/camera.h"
+#include "lightfit/v1/readback.pb.h"
+#include "optimizer/readback.h"
+
+namespace lightfit {
+
+// What a read-back says of itself before its first pixel.
+struct ReadbackHeader {
+  Camera camera;
+  DepthKind depth_kind = DepthKind::kCameraZ;
+  v1::DepthFormat depth_format = v1::DEPTH_FORMAT_FLOAT32;
+  v1::ShadowFormat shadow_format = v1::SHADOW_FORMAT_BITS;
+  int num_lights = 0;
+
+  int64_t num_pixels() const { return int64_t{camera.width} * camera.height; }
+  int64_t depth_bytes() const;         // as sent
+  int64_t shadow_bits_bytes() const;   // as sent, SHADOW_FORMAT_BITS
+  int64_t shadow_plane_bytes() const;  // as sent, each, SHADOW_FORMAT_PLANES
+
+  // What a PixelBuffer of it takes, bytes.
+  int64_t buffer_bytes() const;
+};
+
+// Looks at camera and formats; `field` names the read-back in messages. InvalidArgument when they
+// cannot be or there are no lights or too many, ResourceExhausted above limits.max_pixels.
+absl::StatusOr<ReadbackHeader> ReadbackHeaderFromProto(const v1::Readback& proto,
+                                                       int num_lights,
+                                                       const CallLimits& limits);
+
+class PixelBuffer {
+ public:
+  // Memory is taken as pixels arrive.
+  explicit PixelBuffer(const ReadbackHeader& header);
+
+  // All pixels that the message has, in its own header's formats.
+  absl::Status Append(const v1::Readback& proto);
+
+  // InvalidArgument for what goes beyond the end, is out of order or of the other shadow format.
+  absl::Status Append(const v1::PixelChunk& chunk);
+
+  // InvalidArgument says how much is missing of what.
+  absl::Status CheckComplete() const;
+  bool is_complete() const { return CheckComplete().ok(); }
+
+  // Of a complete buffer; refers to it.
+  Readback View() const { return {header_.camera, depth_, header_.depth_kind, shadow_bits_}; }
+
+ private:
+  absl::Status AppendDepth(absl::string_view bytes);
+  absl::Status AppendShadowBits(absl::string_view bytes);
+  absl::Status AppendShadowPlane(int plane, absl::string_view bytes);
+
+  ReadbackHeader header_;
+  std::vector<float> depth_;
+  std::vector<uint32_t> shadow_bits_;
+  int64_t num_depth_bytes_ = 0;           // arrived so far
+  int64_t num_shadow_bits_bytes_ = 0;     // likewise
+  std::vector<int64_t> num_plane_bytes_;  // of each light
+};
+
+// A read-back that came whole: refers to the message's own bytes where they can be used as they
+// are, and to a buffer of its own otherwise. The message must outlive it.
+class ReadbackView {
+ public:
+  static absl::StatusOr<ReadbackView> Of(const v1::Readback& proto,
+                                         int num_lights,
+                                         const CallLimits& limits);
+
+  ReadbackView(ReadbackView&&) = default;
+  ReadbackView& operator=(ReadbackView&&) = default;
+
+  const Readback& view() const { return view_; }
+
+ private:
+  explicit ReadbackView(const ReadbackHeader& header) : buffer_(header) {}
+
+  PixelBuffer buffer_;
+  Readback view_;
+};
+
+}  // namespace lightfit

@@ -1,0 +1,17 @@
+#include "calls/request_fields.h"
+
+#include "optimizer/prepared_light.h"
+
+namespace lightfit {
+
+absl::StatusOr<MapSize> MapSizeOfRequest(const v1::MapSize& map, const FitOptions& options) {
+  const MapSize size = {map.width(), map.height()};
+  if (absl::Status status = ValidateMapSize(size, options.margin_texels); !status.ok()) {
+    return status;
+  }
+  return size;
+}
+
+absl::Status StoppedError() { return absl::CancelledError("stopped before the search was done"); }
+
+}  // namespace lightfit

@@ -1,0 +1,45 @@
+#include "calls/summary_call.h"
+
+#include <string>
+
+#include "calls/fit_summary.h"
+#include "calls/message_text.h"
+#include "calls/request_fields.h"
+#include "calls/summary_request.h"
+#include "io/proto_json.h"
+#include "io/result_json.h"
+
+namespace lightfit {
+
+absl::StatusOr<v1::FitResult> AnswerFitSummary(const v1::FitSummaryRequest& request,
+                                               const CallContext& context) {
+  const absl::StatusOr<ClipConvention> clip = ClipOfRequest(request);
+  if (!clip.ok()) return clip.status();
+  const absl::StatusOr<SummarySet> sum =
+      SummariesOfRequest(request.summaries(), request.summary_files(), context);
+  if (!sum.ok()) return sum.status();
+  const absl::StatusOr<FitOptions> options =
+      OptionsOfSummaryRequest(request.options(), sum->options, context);
+  if (!options.ok()) return options.status();
+  const absl::StatusOr<MapSize> map = MapSizeOfRequest(request.map(), *options);
+  if (!map.ok()) return map.status();
+
+  FitReport report;
+  report.options = *options;
+  report.map = *map;
+  report.clip = *clip;
+  for (const LightSummary& light : sum->lights) {
+    LightFit& fit = report.lights.emplace_back();
+    fit.light = light.total.light;
+    fit.matrix = FitSummary(light, *map, *options);
+    if (context.stop.stop_requested()) return StoppedError();
+  }
+  v1::FitResult result = FitResultToProto(report);
+  ClearReadbackFigures(result.mutable_readback(), result.mutable_lights());
+  SayMissingFrames(sum->lights, result.mutable_lights());
+  MakeMessagesUtf8(result.mutable_lights());
+  if (absl::Status status = CheckFinite(result, "result"); !status.ok()) return status;
+  return result;
+}
+
+}  // namespace lightfit

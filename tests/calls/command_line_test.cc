@@ -1,0 +1,72 @@
+// Calls give what the command line writes, bit for bit.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "calls/allocate_call.h"
+#include "calls/summary_call.h"
+#include "io/allocation_json.h"
+#include "tests/calls/requests.h"
+#include "tests/cli/allocations.h"
+#include "tests/cli/summaries.h"
+#include "tests/io/summary_examples.h"
+
+namespace lightfit {
+namespace {
+
+using testing::Yard;
+
+// `message` as it would be in the file, but for the name of what it was made from.
+template <typename Message>
+std::string JsonWithoutSource(Message message) {
+  message.mutable_readback()->clear_source();
+  return *ProtoToJson(message);
+}
+
+TEST(CommandLine, AllocateIsTheSame) {
+  const TemporaryFolder folder;
+  const std::string path = folder.Path("maps.json");
+  ASSERT_EQ(AllocateYard({"--budget", "1000000", "--quiet", "--json", path}).exit_code, 0);
+  auto request = testing::RequestOf<v1::AllocateRequest>(Yard().file.View(), Yard().lights);
+  request.set_budget_texels(1000000);
+  const auto result = AnswerAllocate(request, CallContext());
+  ASSERT_THAT(result, testing::IsOk());
+  EXPECT_EQ(JsonWithoutSource(*result), JsonWithoutSource(ReadAllocation(path)));
+}
+
+TEST(CommandLine, AllocateOfSummariesIsTheSame) {
+  const TemporaryFolder folder;
+  const std::string summary = YardSummary(folder, "yard.summary", {"--metric", "l2"});
+  const std::string path = folder.Path("maps.json");
+  const Arguments arguments = {
+      "allocate", "--summary", summary, "--tolerance", "rms:1.0", "--quiet", "--json", path};
+  ASSERT_EQ(RunLightfit(arguments).exit_code, 0);
+  v1::AllocateRequest request;
+  request.add_summary_files(ReadFile(summary));
+  request.mutable_tolerance()->set_kind(v1::Tolerance::KIND_RMS);
+  request.mutable_tolerance()->set_limit_px(1.0);
+  const auto result = AnswerAllocate(request, CallContext());
+  ASSERT_THAT(result, testing::IsOk());
+  EXPECT_EQ(JsonWithoutSource(*result), JsonWithoutSource(ReadAllocation(path)));
+}
+
+TEST(CommandLine, FitOfSummariesIsTheSame) {
+  const TemporaryFolder folder;
+  const std::string summary = YardSummary(folder, "yard.summary");
+  const std::string path = folder.Path("fit.json");
+  const Arguments arguments = {
+      "fit", "--summary", summary, summary, "--map", "512x256", "--quiet", "--json", path};
+  ASSERT_EQ(RunLightfit(arguments).exit_code, 0);
+  v1::FitSummaryRequest request;
+  for (int i = 0; i < 2; ++i) request.add_summary_files(ReadFile(summary));
+  request.mutable_map()->set_width(512);
+  request.mutable_map()->set_height(256);
+  const auto result = AnswerFitSummary(request, CallContext());
+  ASSERT_THAT(result, testing::IsOk());
+  EXPECT_EQ(JsonWithoutSource(*result), JsonWithoutSource(ReadResult(path)));
+}
+
+}  // namespace
+}  // namespace lightfit
