@@ -14,6 +14,7 @@
 #include "cli/exit_code.h"
 #include "cli/fit.h"
 #include "cli/render.h"
+#include "cli/serve.h"
 #include "cli/shot.h"
 #include "cli/summarize.h"
 #include "cli/verb.h"
@@ -30,6 +31,7 @@ constexpr Verb kVerbs[] = {
     {"render",
      "Make a read-back with exact shadows from a scene (.glb, .obj, .ply)",
      DeclareRender},
+    {"serve", "Serve fits over gRPC, for renderers and farms", DeclareServe},
     {"shot", "Fit all frames of a shot: per frame, tracked, and once for all", DeclareShot},
     {"summarize",
      "Sum up read-backs in small files, for one fit to all (fit --summary)",

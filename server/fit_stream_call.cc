@@ -1,0 +1,97 @@
+#include "server/fit_stream_call.h"
+
+#include <utility>
+
+#include "calls/fit_call.h"
+
+namespace lightfit {
+
+FitStreamCall::FitStreamCall(ServerParts* parts,
+                             grpc::CallbackServerContext* context,
+                             v1::FitResult* result)
+    : call_(parts, "FitStream", context), result_(result) {
+  if (absl::Status status = call_.EnterAsStream(nullptr); !status.ok()) {
+    End(status);
+    return;
+  }
+  call_.parts().uploads.Begin(this, [this] { End(LateUpload(call_.parts().limits)); });
+  StartRead(&part_);
+}
+
+void FitStreamCall::OnDone() {
+  call_.parts().uploads.End(this);
+  delete this;
+}
+
+void FitStreamCall::OnReadDone(bool ok) {
+  if (has_ended_) return;
+  const absl::Status status = ok ? Take(part_) : Submit();
+  if (!status.ok()) {
+    End(status);
+  } else if (ok) {
+    StartRead(&part_);
+  }
+}
+
+absl::Status FitStreamCall::Take(const v1::FitStreamRequest& part) {
+  call_.NoteReceived(static_cast<int64_t>(part.ByteSizeLong()));
+  switch (part.part_case()) {
+    case v1::FitStreamRequest::kRequest:
+      return Begin(part_.mutable_request());
+    case v1::FitStreamRequest::kPixels:
+      if (!pixels_.has_value()) {
+        return absl::InvalidArgumentError("pixels: come before request, want request first");
+      }
+      if (absl::Status status = CheckChunk(part.pixels()); !status.ok()) return status;
+      return pixels_->Append(part.pixels());
+    case v1::FitStreamRequest::PART_NOT_SET:
+      break;
+  }
+  return absl::InvalidArgumentError("message is empty, want request or pixels");
+}
+
+absl::Status FitStreamCall::Begin(v1::FitRequest* request) {
+  if (pixels_.has_value()) {
+    return absl::InvalidArgumentError("request: is here already, want it once");
+  }
+  const absl::StatusOr<ReadbackHeader> header = ReadbackHeaderFromProto(
+      request->readback(), request->lights_size(), call_.parts().limits.calls);
+  if (!header.ok()) return header.status();
+  if (absl::Status status = call_.Reserve(header->buffer_bytes()); !status.ok()) return status;
+  call_.NotePixels(header->num_pixels());
+  pixels_.emplace(*header);
+  request_.Swap(request);
+  absl::Status status = pixels_->Append(request_.readback());
+  // They are in the buffer now.
+  request_.mutable_readback()->clear_depth();
+  request_.mutable_readback()->clear_shadow_bits();
+  request_.mutable_readback()->clear_shadow_planes();
+  return status;
+}
+
+absl::Status FitStreamCall::Submit() {
+  call_.parts().uploads.End(this);
+  if (has_ended_) return absl::OkStatus();  // it was late; nothing else ends it from here on
+  if (!pixels_.has_value()) {
+    return absl::InvalidArgumentError("stream ended before its first message, want request");
+  }
+  if (absl::Status status = pixels_->CheckComplete(); !status.ok()) return status;
+  call_.NoteUploaded();
+  return call_.Run([this] { Compute(); });
+}
+
+void FitStreamCall::Compute() {
+  absl::StatusOr<v1::FitResult> result = AnswerFit(request_, pixels_->View(), call_.context());
+  if (result.ok()) {
+    call_.NoteLights(result->lights());
+    *result_ = *std::move(result);
+  }
+  End(result.status());
+}
+
+void FitStreamCall::End(const absl::Status& status) {
+  if (has_ended_.exchange(true)) return;
+  Finish(call_.Finish(status));
+}
+
+}  // namespace lightfit

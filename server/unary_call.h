@@ -1,0 +1,77 @@
+// server/unary_call.h
+//
+// A call of one request and one result.
+// In:   the request, and the function of calls/ that answers it.
+// Out:  the result, computed on the pool.
+#pragma once
+
+#include <grpcpp/support/server_callback.h>
+
+#include <utility>
+
+#include "absl/status/statusor.h"
+#include "calls/call_context.h"
+#include "server/call.h"
+
+namespace lightfit {
+
+// Of a request: pixels, and the bytes that it takes while it is worked on.
+struct RequestSize {
+  int64_t pixels = 0;
+  int64_t bytes = 0;
+};
+RequestSize SizeOf(const v1::FitRequest& request);
+RequestSize SizeOf(const v1::FitSummaryRequest& request);
+RequestSize SizeOf(const v1::EvaluateRequest& request);
+RequestSize SizeOf(const v1::AllocateRequest& request);
+
+// The lights of a result go to the metrics.
+void NoteResult(const v1::FitResult& result, Call* call);
+void NoteResult(const v1::EvaluateResult& result, Call* call);
+void NoteResult(const v1::Allocation& result, Call* call);
+
+// Deletes itself when gRPC is done with it.
+template <typename Request, typename Result>
+class UnaryCall final : public grpc::ServerUnaryReactor {
+ public:
+  using Answer = absl::StatusOr<Result> (*)(const Request&, const CallContext&);
+
+  UnaryCall(ServerParts* parts,
+            const char* method,
+            grpc::CallbackServerContext* context,
+            const Request* request,
+            Result* result,
+            Answer answer)
+      : call_(parts, method, context), request_(request), result_(result), answer_(answer) {
+    if (const absl::Status status = Admit(); !status.ok()) Finish(call_.Finish(status));
+  }
+
+  void OnCancel() override { call_.Stop(); }
+  void OnDone() override { delete this; }
+
+ private:
+  absl::Status Admit() {
+    if (absl::Status status = call_.Enter(); !status.ok()) return status;
+    const RequestSize size = SizeOf(*request_);
+    call_.NoteReceived(static_cast<int64_t>(request_->ByteSizeLong()));
+    call_.NotePixels(size.pixels);
+    if (absl::Status status = call_.Reserve(size.bytes); !status.ok()) return status;
+    return call_.Run([this] { Compute(); });
+  }
+
+  void Compute() {
+    absl::StatusOr<Result> result = answer_(*request_, call_.context());
+    if (result.ok()) {
+      NoteResult(*result, &call_);
+      *result_ = *std::move(result);
+    }
+    Finish(call_.Finish(result.status()));  // may be the end of this object
+  }
+
+  Call call_;
+  const Request* request_;
+  Result* result_;
+  Answer answer_;
+};
+
+}  // namespace lightfit

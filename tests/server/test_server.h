@@ -1,0 +1,119 @@
+// tests/server/test_server.h
+//
+// A server in this process, on a free port, and a client of it.
+#pragma once
+
+#include <gmock/gmock.h>
+#include <grpcpp/grpcpp.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "io/options_proto.h"
+#include "lightfit/v1/service.grpc.pb.h"
+#include "server/server.h"
+#include "tests/calls/requests.h"
+#include "tests/io/summary_examples.h"
+#include "tests/testing/plane_readback.h"
+
+namespace lightfit::testing {
+
+inline ServerOptions QuietOptions() {
+  ServerOptions options;
+  options.listen = "127.0.0.1:0";
+  options.log_level = "error";
+  return options;
+}
+
+class TestServer {
+ public:
+  explicit TestServer(const ServerOptions& options = QuietOptions()) {
+    auto server = Server::Start(options);
+    EXPECT_TRUE(server.ok()) << server.status();
+    if (!server.ok()) return;
+    server_ = *std::move(server);
+    channel_ = grpc::CreateChannel(server_->address(), grpc::InsecureChannelCredentials());
+    stub_ = v1::LightFit::NewStub(channel_);
+  }
+
+  Server& server() { return *server_; }
+  const std::shared_ptr<grpc::Channel>& channel() { return channel_; }
+  v1::LightFit::Stub& stub() { return *stub_; }
+
+ private:
+  std::unique_ptr<Server> server_;
+  std::shared_ptr<grpc::Channel> channel_;
+  std::unique_ptr<v1::LightFit::Stub> stub_;
+};
+
+template <typename Request>
+Request WithMap(Request request) {
+  request.mutable_map()->set_width(kMap.width);
+  request.mutable_map()->set_height(kMap.height);
+  return request;
+}
+
+inline v1::FitRequest YardFitRequest() {
+  return WithMap(RequestOf<v1::FitRequest>(Yard().file.View(), Yard().lights));
+}
+
+// A fit of a large read-back, sample by sample: seconds of work, unless it is stopped.
+inline v1::FitRequest LongFitRequest() {
+  constexpr int kWidth = 1280, kHeight = 960;
+  PlaneReadback floor = FloorReadback(FloorCamera(kWidth, kHeight));
+  std::vector<Light> lights;
+  for (int bit = 0; bit < 32; ++bit) {
+    floor.Cast(bit, [&](int x, int y) { return (x / (20 + bit) + y / 30) % 2 == 0; });
+    lights.push_back(
+        Light::Directional("sun" + std::to_string(bit), {0.02 * bit - 0.3, 0.3, -1.0}, bit));
+  }
+  v1::FitRequest request = WithMap(RequestOf<v1::FitRequest>(floor.View(), lights));
+  *request.mutable_options() = FitOptionsToProto(FitOptions::AsPublished());
+  request.mutable_options()->set_sample_by_sample(true);
+  return request;
+}
+
+// A stream's messages: the request, then its pixels in chunks.
+inline std::vector<v1::PixelChunk> Chunks(const v1::Readback& readback, size_t chunk_bytes) {
+  std::vector<v1::PixelChunk> chunks;
+  for (size_t at = 0; at < readback.depth().size(); at += chunk_bytes) {
+    chunks.emplace_back().set_depth(readback.depth().substr(at, chunk_bytes));
+  }
+  for (size_t at = 0; at < readback.shadow_bits().size(); at += chunk_bytes) {
+    chunks.emplace_back().set_shadow_bits(readback.shadow_bits().substr(at, chunk_bytes));
+  }
+  return chunks;
+}
+
+inline v1::Readback WithoutPixels(v1::Readback readback) {
+  readback.clear_depth();
+  readback.clear_shadow_bits();
+  return readback;
+}
+
+inline grpc::Status FitInStream(v1::LightFit::Stub& stub,
+                                const v1::FitRequest& request,
+                                size_t chunk_bytes,
+                                grpc::ClientContext* context,
+                                v1::FitResult* result) {
+  const auto writer = stub.FitStream(context, result);
+  v1::FitStreamRequest first;
+  *first.mutable_request() = request;
+  *first.mutable_request()->mutable_readback() = WithoutPixels(request.readback());
+  bool is_open = writer->Write(first);
+  for (const v1::PixelChunk& chunk : Chunks(request.readback(), chunk_bytes)) {
+    if (!is_open) break;
+    v1::FitStreamRequest part;
+    *part.mutable_pixels() = chunk;
+    is_open = writer->Write(part);
+  }
+  writer->WritesDone();
+  return writer->Finish();
+}
+
+}  // namespace lightfit::testing
