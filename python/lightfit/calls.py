@@ -1,0 +1,303 @@
+"""What can be asked of lightfit: one class with all the calls, whoever answers them."""
+
+from __future__ import annotations
+
+import abc
+from types import TracebackType
+from typing import Any, Iterable, Mapping, Optional, Sequence, Type
+
+from lightfit.errors import error_of
+from lightfit.exr import ExrReadback, read_exr
+from lightfit.inputs import AnyCamera, Clip, Lights, MapSize, Options, Path_
+from lightfit.pixels import Pixels
+from lightfit.request import (
+    Candidate,
+    ReadbackParts,
+    Summary,
+    Tolerance,
+    allocate_request,
+    evaluate_request,
+    fit_request,
+    readback_parts,
+    summary_request,
+    track_frame,
+    track_setup,
+)
+from lightfit.result import Allocation, EvaluateResult, FitResult
+from lightfit.v1 import allocation_pb2, result_pb2, service_pb2, shot_pb2
+
+
+class Track(abc.ABC):
+    """A sequence of frames, from `track(...)`; a context manager. Not for two threads at once."""
+
+    def __init__(self) -> None:
+        #: What the tracker remembers after the latest frame: for `track(..., state=...)`.
+        self.state: Sequence[shot_pb2.TrackedState] = ()
+
+    def update(
+        self,
+        number: int,
+        depth: Any,
+        shadow: Any,
+        camera: AnyCamera,
+        lights: Lights,
+        *,
+        source: str = "",
+    ) -> FitResult:
+        """The matrices of the next frame.
+
+        number: the caller's, comes back in result.message.shot.number.
+        depth, shadow, camera, lights: as for `fit`. A light is known by its name, and forgotten
+            when a frame is without it.
+
+        LightResult.action says what became of the matrix of the frame before. Raises LightfitError
+        when the frame cannot be used; the tracker stays as it was, and the next frame may come.
+        """
+        parts = readback_parts(depth, shadow, camera, lights, source)
+        answer = self._update(track_frame(number, parts), parts.pixels)
+        if answer.status.code != 0:
+            raise error_of(answer.status.code, answer.status.message, self._request_id())
+        self.state = tuple(answer.result.shot.tracker_state)
+        return FitResult.of(answer.result)
+
+    @abc.abstractmethod
+    def close(self) -> None:
+        """Ends the sequence."""
+
+    def __enter__(self) -> "Track":
+        return self
+
+    def __exit__(
+        self,
+        kind: Optional[Type[BaseException]],
+        error: Optional[BaseException],
+        trace: Optional[TracebackType],
+    ) -> None:
+        self.close()
+
+    @abc.abstractmethod
+    def _update(
+        self, frame: service_pb2.TrackFrame, pixels: Pixels
+    ) -> service_pb2.TrackResult: ...
+
+    @abc.abstractmethod
+    def _request_id(self) -> Optional[str]: ...
+
+
+class Calls(abc.ABC):
+    """The calls. Arguments that all of them share:
+
+    timeout_s: seconds until DeadlineError, in all. None: as the Client was told; without a server,
+        no limit.
+    request_id: up to 128 printable ASCII characters that name the call in logs and errors. None:
+        one is made up for a server.
+
+    What is wrong with the call as a whole raises LightfitError, see lightfit.errors; arguments that
+    are wrong by themselves raise InvalidArgumentError, a ValueError, before anything is sent.
+    """
+
+    def fit(
+        self,
+        depth: Any,
+        shadow: Any,
+        camera: AnyCamera,
+        lights: Lights,
+        map_size: MapSize,
+        *,
+        options: Optional[Options] = None,
+        clip: Clip = "vulkan",
+        foretell_wrong: bool = False,
+        source: str = "",
+        timeout_s: Optional[float] = None,
+        request_id: Optional[str] = None,
+    ) -> FitResult:
+        """The matrices of a read-back's lights.
+
+        depth: (height, width) float32 or float16, top row first, of the kind that the camera says.
+            Background is 1e9 or more, infinity, or the far plane; single bad values are ignored.
+        shadow: (height, width) uint32, bit l is 1 where light l is blocked; or (lights, height,
+            width), one plane per light: bool, or uint8 with 255 where it is blocked.
+        camera: `Camera.from_matrices(...)`, or a lightfit.v1 Camera message.
+        lights: 1 to 32, `Light.sun(...)`, `Light.point(...)`, dicts such as {"name": "key",
+            "position": [3, 1, 4]}, messages; or the path of a lights file. Names differ.
+        map_size: (width, height) of every light's map, texels.
+        options: every choice of a fit, None for the defaults: a dict such as {"search": "focused",
+            "margin_texels": 2}, or a lightfit.v1 FitOptions message.
+        clip: convention of LightResult.clip_from_world: "vulkan", "direct3d", "opengl",
+            "reversed_z".
+        foretell_wrong: whether LightResult.foretold_wrong is wanted.
+        source: where the read-back came from; comes back in result.message.readback.source.
+
+        Each light has its own status: a light without a matrix does not raise.
+        """
+        parts = readback_parts(depth, shadow, camera, lights, source)
+        request = fit_request(parts, map_size, options, clip, foretell_wrong)
+        return FitResult.of(self._fit(request, parts.pixels, timeout_s, request_id))
+
+    def fit_exr(
+        self,
+        path: Path_,
+        lights: Lights,
+        map_size: MapSize,
+        *,
+        options: Optional[Options] = None,
+        clip: Clip = "vulkan",
+        foretell_wrong: bool = False,
+        timeout_s: Optional[float] = None,
+        request_id: Optional[str] = None,
+        **exr: Any,
+    ) -> FitResult:
+        """`fit` of an EXR read-back, as `lightfit fit PATH --lights LIGHTS` does it.
+
+        The file is read here, also for a server. exr: the further arguments of `lightfit.read_exr`
+        (camera, depth_kind, depth_channel, shadow_channel, camera_convention ...). A light without
+        a shadow channel has its own status.
+        """
+        readback = read_exr(path, lights, **exr)
+        parts = readback.parts()
+        request = fit_request(parts, map_size, options, clip, foretell_wrong)
+        message = self._fit(request, parts.pixels, timeout_s, request_id)
+        _put_light_status(readback, message)
+        return FitResult.of(message)
+
+    def fit_summary(
+        self,
+        summaries: Sequence[Summary],
+        map_size: MapSize,
+        *,
+        options: Optional[Options] = None,
+        clip: Clip = "vulkan",
+        timeout_s: Optional[float] = None,
+        request_id: Optional[str] = None,
+    ) -> FitResult:
+        """One matrix per light for all the frames that summaries were made of.
+
+        summaries: files of `lightfit summarize` by name, or their bytes, or SummaryFile messages;
+            all of the same lights and options. They are added up.
+        options: the search; samples, metric and cover are those of the summaries.
+        map_size, clip: as for `fit`.
+        """
+        request = summary_request(summaries, map_size, options, clip)
+        return FitResult.of(self._call("FitSummary", request, timeout_s, request_id))
+
+    def track(
+        self,
+        map_size: MapSize,
+        *,
+        stability: Optional[float] = None,
+        tracker: Optional[shot_pb2.TrackerSettings] = None,
+        options: Optional[Options] = None,
+        clip: Clip = "vulkan",
+        state: Sequence[shot_pb2.TrackedState] = (),
+        timeout_s: Optional[float] = None,
+        request_id: Optional[str] = None,
+    ) -> Track:
+        """A sequence of frames whose matrices are kept while they are good enough.
+
+        stability: 0 (every frame has the tightest map, and crawls) ... 1 (a matrix stays as long as
+            it is valid). None: 0.5.
+        tracker: instead, every choice of the rule as a lightfit.v1 TrackerSettings message.
+        state: `Track.state` of an earlier sequence, to go on from there.
+        timeout_s: of each frame.
+        map_size, options, clip: as for `fit`.
+
+            with lightfit.track((1024, 1024), stability=0.5) as track:
+                result = track.update(1, depth, shadow, camera, lights)
+        """
+        setup = track_setup(map_size, stability, tracker, options, clip, state)
+        track = self._track(setup, timeout_s, request_id)
+        track.state = tuple(state)
+        return track
+
+    def evaluate(
+        self,
+        depth: Any,
+        shadow: Any,
+        camera: AnyCamera,
+        lights: Lights,
+        matrices: Iterable[Candidate],
+        *,
+        options: Optional[Options] = None,
+        source: str = "",
+        timeout_s: Optional[float] = None,
+        request_id: Optional[str] = None,
+    ) -> EvaluateResult:
+        """How good the caller's own matrices are.
+
+        matrices: any number per light, `Candidate.map("sun", map_from_world, (1024, 1024))` or
+            `Candidate.clip("sun", clip_from_world, (1024, 1024), clip="opengl")`.
+        depth, shadow, camera, lights, options: as for `fit`.
+        """
+        parts = readback_parts(depth, shadow, camera, lights, source)
+        request = evaluate_request(parts, matrices, options)
+        return EvaluateResult.of(self._call("Evaluate", request, timeout_s, request_id))
+
+    def allocate(
+        self,
+        depth: Any = None,
+        shadow: Any = None,
+        camera: Optional[AnyCamera] = None,
+        lights: Optional[Lights] = None,
+        *,
+        summaries: Optional[Sequence[Summary]] = None,
+        budget_texels: Optional[int] = None,
+        tolerance: Optional[Tolerance] = None,
+        weights: Optional[Mapping[str, float]] = None,
+        rules: Optional[allocation_pb2.MapSizeRules] = None,
+        options: Optional[Options] = None,
+        clip: Clip = "vulkan",
+        source: str = "",
+        timeout_s: Optional[float] = None,
+        request_id: Optional[str] = None,
+    ) -> Allocation:
+        """Sizes of shadow maps, from a read-back (as for `fit`) or from summaries.
+
+        budget_texels: of all maps together, split so that the lights' energies are least; or
+        tolerance: the smallest maps that keep `Tolerance(limit_px, image_scale, kind)`.
+        weights: by light, > 0, what its energy counts in a budget; 1 for those that are not named.
+        rules: of the sides, a lightfit.v1 MapSizeRules message. None: multiples of 64 from 64 to
+            16384.
+        """
+        parts: Optional[ReadbackParts] = None
+        if any(part is not None for part in (depth, shadow, camera, lights)):
+            given_camera: Any = camera  # says what it wants when it is missing, as the others do
+            parts = readback_parts(depth, shadow, given_camera, lights or (), source)
+        request = allocate_request(
+            parts, summaries, budget_texels, tolerance, weights, rules, options, clip
+        )
+        return Allocation.of(self._call("Allocate", request, timeout_s, request_id))
+
+    @abc.abstractmethod
+    def _fit(
+        self,
+        request: service_pb2.FitRequest,
+        pixels: Pixels,
+        timeout_s: Optional[float],
+        request_id: Optional[str],
+    ) -> result_pb2.FitResult:
+        """The request has no pixels yet."""
+
+    @abc.abstractmethod
+    def _call(
+        self, method: str, request: Any, timeout_s: Optional[float], request_id: Optional[str]
+    ) -> Any:
+        """A call of one request and one result: "FitSummary", "Evaluate" or "Allocate"."""
+
+    @abc.abstractmethod
+    def _track(
+        self,
+        setup: service_pb2.TrackSetup,
+        timeout_s: Optional[float],
+        request_id: Optional[str],
+    ) -> Track: ...
+
+
+def _put_light_status(readback: ExrReadback, result: result_pb2.FitResult) -> None:
+    """Lights whose shadow could not be read went along without any; what is wrong is that."""
+    for light, status in zip(result.lights, readback.light_status):
+        if status.code == 0:
+            continue
+        failed = result_pb2.LightResult(name=light.name, map=light.map, status=status)
+        if light.HasField("light"):
+            failed.light.CopyFrom(light.light)
+        light.CopyFrom(failed)

@@ -1,0 +1,92 @@
+"""Read-backs from OpenEXR files, read by the library itself, as `lightfit fit` reads them."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+from typing import Any, Dict, List, Mapping, Optional, Tuple
+
+import numpy
+from numpy.typing import NDArray
+
+from lightfit import _load
+from lightfit.inputs import AnyCamera, Camera, Lights, Path_, depth_kind_number, light_messages
+from lightfit.request import ReadbackParts, readback_parts
+from lightfit.v1 import camera_pb2, light_pb2, result_pb2
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class ExrReadback:
+    """The first four arguments of `fit`: depth, shadow, camera, lights."""
+
+    depth: NDArray[numpy.float32]  # (h, w), the file's display window
+    shadow: NDArray[numpy.uint32]  # (h, w), light l in bit l
+    camera: Camera
+    lights: Tuple[light_pb2.Light, ...]
+    light_status: List[result_pb2.Status]  # of each: code 0, or why its shadow could not be read
+    path: str
+
+    def parts(self) -> ReadbackParts:
+        return readback_parts(self.depth, self.shadow, self.camera, self.lights, self.path)
+
+
+def read_exr(
+    path: Path_,
+    lights: Lights,
+    *,
+    camera: Optional[AnyCamera] = None,
+    camera_convention: str = "",
+    near: Optional[float] = None,
+    far: Optional[float] = None,
+    pixel_aspect: Optional[float] = None,
+    depth_kind: Optional[str] = None,
+    depth_channel: str = "",
+    shadow_channel: str = "",
+    shadow_channels: Optional[Mapping[str, str]] = None,
+    shadow_bits_channel: str = "",
+) -> ExrReadback:
+    """Reads depth, shadows and camera.
+
+    path: the file. lights: as for `fit`.
+    camera: instead of the attributes worldToCamera and worldToNDC of the file.
+    camera_convention: who wrote those: "openexr", "mantra" or "pbrt"; words such as
+        "column-vectors,y-up" change it.
+    near, far: clip planes, world units; needed for NDC depth only.
+    pixel_aspect: width over height of a pixel. None: as the file says.
+    depth_kind: as for Camera.from_matrices. None: as the camera says, or else "camera-z".
+    depth_channel: "Z", or the only channel that ends in ".Z", unless given.
+    shadow_channel: the name of the shadow channels, "shadow.{light}" unless given; a light is
+        blocked above 0.5.
+    shadow_channels: light name to channel name, for lights that do not follow that.
+    shadow_bits_channel: instead, one UINT channel that holds all shadows, light l in bit l.
+
+    Raises InvalidArgumentError when the file, its depth or its camera cannot be used. A light
+    without a shadow channel has its own `light_status`, and no shadow.
+    """
+    messages = light_messages(lights)
+    options: Dict[str, Any] = {
+        "camera_convention": camera_convention,
+        "depth_channel": depth_channel,
+        "shadow_channel": shadow_channel,
+        "shadow_channels": dict(shadow_channels or {}),
+        "shadow_bits_channel": shadow_bits_channel,
+        "depth_kind": 0 if depth_kind is None else depth_kind_number(depth_kind),
+    }
+    for name, value in (("near", near), ("far", far), ("pixel_aspect", pixel_aspect)):
+        if value is not None:
+            options[name] = float(value)
+    if camera is not None:
+        message = camera.message if isinstance(camera, Camera) else camera
+        options["camera"] = message.SerializeToString()
+    name = os.fspath(path)
+    depth, shadow, found, statuses = _load.native().read_exr(
+        name, light_pb2.LightList(lights=messages).SerializeToString(), options
+    )
+    return ExrReadback(
+        depth=depth,
+        shadow=shadow,
+        camera=Camera(camera_pb2.Camera.FromString(found)),
+        lights=messages,
+        light_status=[result_pb2.Status(code=code, message=text) for code, text in statuses],
+        path=name,
+    )

@@ -1,0 +1,245 @@
+"""From arguments to messages. Whether a server or this process answers, requests are the same."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+from pathlib import Path
+from typing import Any, Iterable, Mapping, Optional, Sequence, Tuple, Union
+
+from numpy.typing import ArrayLike
+
+from lightfit.errors import InvalidArgumentError
+from lightfit.inputs import (
+    AnyCamera,
+    Clip,
+    Lights,
+    MapSize,
+    Options,
+    camera_message,
+    clip_message,
+    light_messages,
+    map_size_message,
+    matrix_message,
+    options_message,
+)
+from lightfit.pixels import Pixels, check_pixels
+from lightfit.v1 import (
+    allocation_pb2,
+    light_pb2,
+    readback_pb2,
+    service_pb2,
+    shot_pb2,
+    summary_pb2,
+)
+
+# A summary: the path of a file of `lightfit summarize`, its bytes, or its message.
+Summary = Union[str, "os.PathLike[str]", bytes, summary_pb2.SummaryFile]
+
+
+@dataclasses.dataclass(frozen=True)
+class ReadbackParts:
+    """A read-back on its way: header and lights as messages, pixels still as arrays."""
+
+    header: readback_pb2.Readback
+    lights: Tuple[light_pb2.Light, ...]
+    pixels: Pixels
+
+
+def readback_parts(
+    depth: Any, shadow: Any, camera: AnyCamera, lights: Lights, source: str = ""
+) -> ReadbackParts:
+    messages = light_messages(lights)
+    pixels = check_pixels(depth, shadow, len(messages))
+    header = pixels.header()
+    header.camera.CopyFrom(camera_message(camera, pixels.width, pixels.height))
+    header.source = source
+    return ReadbackParts(header, messages, pixels)
+
+
+def fit_request(
+    parts: ReadbackParts,
+    map_size: MapSize,
+    options: Optional[Options],
+    clip: Clip,
+    foretell_wrong: bool,
+) -> service_pb2.FitRequest:
+    """Without pixels."""
+    return service_pb2.FitRequest(
+        readback=parts.header,
+        lights=parts.lights,
+        map=map_size_message(map_size),
+        options=options_message(options),
+        clip=clip_message(clip),
+        foretell_wrong=foretell_wrong,
+    )
+
+
+def summary_request(
+    summaries: Sequence[Summary], map_size: MapSize, options: Optional[Options], clip: Clip
+) -> service_pb2.FitSummaryRequest:
+    request = service_pb2.FitSummaryRequest(
+        map=map_size_message(map_size), options=options_message(options), clip=clip_message(clip)
+    )
+    _add_summaries(summaries, request)
+    return request
+
+
+@dataclasses.dataclass(frozen=True)
+class Candidate:
+    """A matrix to be evaluated."""
+
+    message: service_pb2.CandidateMatrix
+
+    @classmethod
+    def map(cls, light: str, map_from_world: ArrayLike, map_size: MapSize) -> "Candidate":
+        """light: the name of one of the lights. map_from_world: (4, 4), as in LightResult; its
+        third row does not matter. map_size: (width, height), texels."""
+        return cls(
+            service_pb2.CandidateMatrix(
+                light=light,
+                map_from_world=matrix_message(map_from_world, f'light "{light}": map_from_world'),
+                map=map_size_message(map_size),
+            )
+        )
+
+    @classmethod
+    def clip(
+        cls, light: str, clip_from_world: ArrayLike, map_size: MapSize, *, clip: Clip
+    ) -> "Candidate":
+        """clip_from_world: (4, 4), column vectors, in the convention `clip`."""
+        field = f'light "{light}": clip_from_world'
+        return cls(
+            service_pb2.CandidateMatrix(
+                light=light,
+                clip_from_world=matrix_message(clip_from_world, field),
+                clip=clip_message(clip),
+                map=map_size_message(map_size),
+            )
+        )
+
+
+def evaluate_request(
+    parts: ReadbackParts, matrices: Iterable[Candidate], options: Optional[Options]
+) -> service_pb2.EvaluateRequest:
+    request = service_pb2.EvaluateRequest(
+        readback=parts.header, lights=parts.lights, options=options_message(options)
+    )
+    for index, candidate in enumerate(matrices):
+        if not isinstance(candidate, Candidate):
+            raise InvalidArgumentError(
+                f"matrices[{index}]: is a {type(candidate).__name__}, want lightfit.Candidate, "
+                'such as Candidate.map("sun", map_from_world, (1024, 1024))'
+            )
+        request.matrices.append(candidate.message)
+    parts.pixels.fill(request.readback)
+    return request
+
+
+@dataclasses.dataclass(frozen=True)
+class Tolerance:
+    """What a texel may be on the final image at most.
+
+    limit_px: pixels of the final image per texel.
+    image_scale: pixels of the final image per pixel of the read-back.
+    kind: of the samples' footprints: "rms", "p99" or "worst".
+    """
+
+    limit_px: float
+    image_scale: float = 1.0
+    kind: str = "p99"
+
+    @property
+    def message(self) -> allocation_pb2.Tolerance:
+        kinds = allocation_pb2.Tolerance.Kind
+        word = f"KIND_{self.kind}".upper()
+        if word not in kinds.keys() or self.kind == "unspecified":
+            raise InvalidArgumentError(f"tolerance: kind = {self.kind!r}, want rms, p99 or worst")
+        return allocation_pb2.Tolerance(
+            kind=kinds.Value(word), limit_px=self.limit_px, image_scale=self.image_scale
+        )
+
+
+def allocate_request(
+    parts: Optional[ReadbackParts],
+    summaries: Optional[Sequence[Summary]],
+    budget_texels: Optional[int],
+    tolerance: Optional[Tolerance],
+    weights: Optional[Mapping[str, float]],
+    rules: Optional[allocation_pb2.MapSizeRules],
+    options: Optional[Options],
+    clip: Clip,
+) -> service_pb2.AllocateRequest:
+    if (budget_texels is None) == (tolerance is None):
+        raise InvalidArgumentError(
+            "allocate: want either budget_texels, such as 4 * 1024 * 1024, or tolerance, such as "
+            "lightfit.Tolerance(1.0)"
+        )
+    request = service_pb2.AllocateRequest(
+        options=options_message(options),
+        clip=clip_message(clip),
+        rules=rules,
+        tolerance=tolerance.message if tolerance is not None else None,
+        weights=[
+            service_pb2.LightWeight(light=light, weight=weight)
+            for light, weight in (weights or {}).items()
+        ],
+    )
+    if budget_texels is not None:
+        request.budget_texels = int(budget_texels)
+    if parts is not None:
+        request.readback.CopyFrom(parts.header)
+        request.lights.extend(parts.lights)
+        parts.pixels.fill(request.readback)
+    _add_summaries(summaries or (), request)
+    return request
+
+
+def track_setup(
+    map_size: MapSize,
+    stability: Optional[float],
+    tracker: Optional[shot_pb2.TrackerSettings],
+    options: Optional[Options],
+    clip: Clip,
+    state: Sequence[shot_pb2.TrackedState],
+) -> service_pb2.TrackSetup:
+    if stability is not None and tracker is not None:
+        raise InvalidArgumentError("track: want stability or tracker, not both")
+    setup = service_pb2.TrackSetup(
+        map=map_size_message(map_size),
+        options=options_message(options),
+        clip=clip_message(clip),
+        tracker=tracker,
+        state=state,
+    )
+    if stability is not None:
+        setup.stability = stability
+    return setup
+
+
+def track_frame(number: int, parts: ReadbackParts) -> service_pb2.TrackFrame:
+    """Without pixels."""
+    return service_pb2.TrackFrame(number=number, readback=parts.header, lights=parts.lights)
+
+
+def _add_summaries(
+    summaries: Sequence[Summary],
+    request: Union[service_pb2.FitSummaryRequest, service_pb2.AllocateRequest],
+) -> None:
+    if isinstance(summaries, (str, bytes, os.PathLike, summary_pb2.SummaryFile)):
+        raise InvalidArgumentError("summaries: is one summary, want a list of them: [summary]")
+    for index, summary in enumerate(summaries):
+        if isinstance(summary, summary_pb2.SummaryFile):
+            request.summaries.append(summary)
+        elif isinstance(summary, bytes):
+            request.summary_files.append(summary)
+        elif isinstance(summary, (str, os.PathLike)):
+            try:
+                request.summary_files.append(Path(summary).read_bytes())
+            except OSError as error:
+                raise InvalidArgumentError(f"{summary}: {error.strerror}") from None
+        else:
+            raise InvalidArgumentError(
+                f"summaries[{index}]: is a {type(summary).__name__}, want the name of a file of "
+                "lightfit summarize, or its bytes"
+            )

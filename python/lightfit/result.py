@@ -1,0 +1,253 @@
+"""What calls give: plain dataclasses over the messages. Every `message` is the protobuf message,
+with all fields of the schema."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any, Dict, List, Optional, Tuple
+
+import numpy
+from numpy.typing import NDArray
+
+from lightfit.errors import Code, error_of
+from lightfit.v1 import (
+    allocation_pb2,
+    matrix_pb2,
+    result_pb2,
+    service_pb2,
+    shot_pb2,
+)
+
+Matrix = NDArray[numpy.float64]
+
+
+@dataclasses.dataclass(frozen=True)
+class Status:
+    """code: "OK", "INVALID_ARGUMENT", "FAILED_PRECONDITION" (no single map exists for this light, or
+    it has no shadow edge in view) ... message: what is wrong and what to do about it."""
+
+    code: str
+    message: str
+
+    @property
+    def ok(self) -> bool:
+        return self.code == "OK"
+
+    def __str__(self) -> str:
+        return self.message if self.message else self.code
+
+
+@dataclasses.dataclass(frozen=True)
+class Footprint:
+    """How far one texel reaches on the screen, read-back pixels per texel. 1 is one-to-one."""
+
+    rms: float
+    median: Optional[float]  # None, as p99 and worst, with options compute_statistics: False
+    p99: Optional[float]
+    worst: Optional[float]
+
+
+@dataclasses.dataclass(frozen=True)
+class Samples:
+    """Read-back pixels, by what became of them."""
+
+    receivers: int  # with a surface
+    invalid_depth: int  # NaN, negative or out of range: ignored
+    candidates: int  # next to a shadow edge; the counts below split these
+    background: int
+    discontinuity: int
+    facing_away: int
+    edge_on: int
+    used: int
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class LightResult:
+    """One light. Matrices and figures are None when it is not ok."""
+
+    name: str
+    status: Status
+    map_size: Tuple[int, int]  # (width, height), texels
+
+    # (4, 4), column vectors. (u w, v w, z w, w) = map_from_world @ (x, y, z, 1): u right and v down
+    # in texels, (0, 0) the corner of the first texel; z 0 ... 1 from the nearest to the farthest
+    # receiver.
+    map_from_world: Optional[Matrix]
+
+    # (4, 4): the same for a renderer, clip space in the convention that was asked for.
+    clip_from_world: Optional[Matrix]
+
+    # Sum over the samples of weight times footprint. Comparable between maps of one size on one
+    # read-back only.
+    energy: Optional[float]
+    footprint: Optional[Footprint]
+    samples: Optional[Samples]
+    evaluations: int  # matrices that the search looked at
+    stop_reason: str  # "CONVERGED", "ROUND_LIMIT", "AXIS_AT_LIMIT", "NO_SEARCH"
+    foretold_wrong: Optional[float]  # share of the image's pixels, 0 ... 1; None unless asked for
+
+    # In a track: what became of the matrix of the frame before ("FIRST", "KEPT", "SHIFTED",
+    # "RELAID", "REPLACED", "INVALID"), and for how many frames texels have not moved over surfaces.
+    action: Optional[str]
+    frames_kept: Optional[int]
+
+    message: result_pb2.LightResult = dataclasses.field(repr=False)
+
+    @property
+    def ok(self) -> bool:
+        return self.status.ok
+
+    @classmethod
+    def of(cls, message: result_pb2.LightResult) -> "LightResult":
+        status = status_of(message.status)
+        ok = status.ok
+        tracked = message.HasField("shot")
+        return cls(
+            name=message.name,
+            status=status,
+            map_size=(message.map.width, message.map.height),
+            map_from_world=_matrix(message.map_from_world) if ok else None,
+            clip_from_world=_matrix(message.clip_from_world) if ok else None,
+            energy=message.energies.final if ok else None,
+            footprint=_footprint(message.footprint) if ok else None,
+            samples=_samples(message.samples) if ok else None,
+            evaluations=message.evaluations,
+            stop_reason=_word(result_pb2.StopReason, message.stop_reason, "STOP_REASON_"),
+            foretold_wrong=_optional(message, "foretold_wrong", lambda part: part.final),
+            action=_word(shot_pb2.TrackerAction, message.shot.action, "TRACKER_ACTION_")
+            if tracked
+            else None,
+            frames_kept=message.shot.frames_kept if tracked else None,
+            message=message,
+        )
+
+
+class _Lights:
+    """What results of several lights have in common."""
+
+    lights: List[LightResult]
+
+    @property
+    def ok(self) -> bool:
+        """Whether every light has its matrix."""
+        return all(light.ok for light in self.lights)
+
+    def __getitem__(self, name: str) -> LightResult:
+        for light in self.lights:
+            if light.name == name:
+                return light
+        raise KeyError(name)
+
+    def raise_for_status(self) -> None:
+        """Raises the error of the first light that has no matrix, if there is one."""
+        for light in self.lights:
+            if not light.ok:
+                raise error_of(light.message.status.code, _named(light))
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class FitResult(_Lights):
+    """One LightResult per light, in the order of the call; result["sun"] is that of one."""
+
+    lights: List[LightResult]
+    message: result_pb2.FitResult = dataclasses.field(repr=False)
+
+    @classmethod
+    def of(cls, message: result_pb2.FitResult) -> "FitResult":
+        return cls([LightResult.of(light) for light in message.lights], message)
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Evaluation:
+    """How good one of the caller's matrices is. Figures are None when status is not ok."""
+
+    light: str
+    status: Status
+    energy: Optional[float]  # as LightResult.energy
+    footprint: Optional[Footprint]
+    samples: Optional[Samples]
+    num_behind: Optional[int]  # samples with w <= 0: outside the map, not in energy and footprint
+    wrong_share: Optional[float]  # share of the image's pixels that will be wrong, foretold
+    message: service_pb2.Evaluation = dataclasses.field(repr=False)
+
+    @property
+    def ok(self) -> bool:
+        return self.status.ok
+
+    @classmethod
+    def of(cls, message: service_pb2.Evaluation) -> "Evaluation":
+        status = status_of(message.status)
+        ok = status.ok
+        return cls(
+            light=message.light,
+            status=status,
+            energy=message.energy if ok else None,
+            footprint=_footprint(message.footprint) if ok else None,
+            samples=_samples(message.samples) if ok else None,
+            num_behind=message.num_behind if ok else None,
+            wrong_share=message.wrong_share if ok else None,
+            message=message,
+        )
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class EvaluateResult:
+    """In the order of the matrices of the call."""
+
+    evaluations: List[Evaluation]
+    message: service_pb2.EvaluateResult = dataclasses.field(repr=False)
+
+    @classmethod
+    def of(cls, message: service_pb2.EvaluateResult) -> "EvaluateResult":
+        return cls([Evaluation.of(evaluation) for evaluation in message.evaluations], message)
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Allocation(_Lights):
+    """LightResult.map_size is the size found, and (0, 0) where there is none."""
+
+    lights: List[LightResult]
+    texels: int  # of all maps together
+    message: allocation_pb2.Allocation = dataclasses.field(repr=False)
+
+    @property
+    def map_sizes(self) -> Dict[str, Tuple[int, int]]:
+        """By light: (width, height), texels."""
+        return {light.name: light.map_size for light in self.lights}
+
+    @classmethod
+    def of(cls, message: allocation_pb2.Allocation) -> "Allocation":
+        return cls([LightResult.of(light) for light in message.lights], message.texels, message)
+
+
+def status_of(message: result_pb2.Status) -> Status:
+    return Status(Code.name_of(message.code), message.message)
+
+
+def _named(light: LightResult) -> str:
+    name = f'light "{light.name}"'
+    message = str(light.status)
+    return message if name in message else f"{name}: {message}"
+
+
+def _matrix(message: matrix_pb2.Matrix4x4) -> Optional[Matrix]:
+    return numpy.array(message.m, dtype=numpy.float64).reshape(4, 4) if message.m else None
+
+
+def _optional(message: Any, field: str, read: Any = lambda value: value) -> Any:
+    return read(getattr(message, field)) if message.HasField(field) else None
+
+
+def _footprint(message: result_pb2.FootprintStatistics) -> Footprint:
+    return Footprint(
+        message.rms, *(_optional(message, name) for name in ("median", "p99", "worst"))
+    )
+
+
+def _samples(message: result_pb2.SampleCounts) -> Samples:
+    return Samples(*(getattr(message, field.name) for field in dataclasses.fields(Samples)))
+
+
+def _word(enum: Any, number: int, prefix: str) -> str:
+    word = enum.DESCRIPTOR.values_by_number.get(number)
+    return str(word.name)[len(prefix) :] if word else str(number)

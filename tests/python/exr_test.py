@@ -1,0 +1,92 @@
+"""read_exr and fit_exr against `lightfit fit` on the same file and flags."""
+
+import pathlib
+from typing import Any
+
+import numpy
+import pytest
+
+import lightfit
+from conftest import ROOM, YARD
+from lightfit.v1 import light_pb2
+
+MAP = (1024, 1024)
+
+
+def test_the_arrays_of_a_file(yard: lightfit.ExrReadback) -> None:
+    assert yard.depth.shape == yard.shadow.shape == (180, 180)
+    assert yard.depth.dtype == numpy.float32 and yard.shadow.dtype == numpy.uint32
+    assert [light.name for light in yard.lights] == ["sun", "key", "rim"]
+    assert all(status.code == 0 for status in yard.light_status)
+    assert (yard.camera.message.width, yard.camera.message.height) == (180, 180)
+    assert 0 < (yard.shadow & 1).mean() < 1 and yard.shadow.max() < 8
+    assert numpy.median(yard.depth[yard.depth < 1e9]) > 0
+
+
+@pytest.mark.parametrize("example", [YARD, ROOM])
+def test_a_file_is_fitted_as_by_the_program(fit_by_program: Any, example: pathlib.Path) -> None:
+    exr, lights = example / "0001.exr", example / "scene.json"
+    want = fit_by_program(exr, "--lights", lights)
+    result = lightfit.fit_exr(exr, lights, MAP, foretell_wrong=True)
+    assert result.message == want
+
+
+def test_a_light_without_a_channel_fails_alone(fit_by_program: Any, yard: Any) -> None:
+    exr, lights = YARD / "0001.exr", YARD / "scene.json"
+    want = fit_by_program(exr, "--lights", lights, "--light", "moon=sun:0,1,-1")
+    moon = lightfit.Light.sun("moon", (0, 1, -1)).message
+    result = lightfit.fit_exr(exr, [*yard.lights, moon], MAP, foretell_wrong=True)
+    assert [light.ok for light in result.lights] == [True, True, True, False]
+    assert result["moon"].status.code == "NOT_FOUND"
+    assert '"shadow.moon"' in result["moon"].status.message
+    assert result.message == want
+
+
+def test_the_camera_may_be_given(fit_by_program: Any, yard: lightfit.ExrReadback) -> None:
+    lights = YARD / "scene.json"
+    want = fit_by_program(YARD / "0001.exr", "--lights", lights, "--camera", lights)
+    import json
+
+    scene = json.loads(lights.read_text())
+    camera = lightfit.Camera.from_blender(
+        scene["frames"][0]["camera_to_world"],
+        scene["frames"][0]["projection"],
+        width=180,
+        height=180,
+    )
+    result = lightfit.fit_exr(
+        YARD / "0001.exr", lights, MAP, camera=camera, foretell_wrong=True
+    )
+    assert result.message == want
+
+
+def test_channels_may_be_named(yard: lightfit.ExrReadback) -> None:
+    sun = light_pb2.Light(name="main", direction=yard.lights[0].direction)
+    named = lightfit.read_exr(
+        YARD / "0001.exr", [sun], depth_channel="Z", shadow_channels={"main": "shadow.sun"}
+    )
+    assert numpy.array_equal(named.shadow, yard.shadow & 1)
+    assert numpy.array_equal(named.depth, yard.depth)
+
+
+@pytest.mark.parametrize(
+    "path, more, words",
+    [
+        ("absent.exr", {}, "absent.exr"),
+        (YARD / "scene.json", {}, "scene.json"),
+        (YARD / "0001.exr", {"depth_channel": "depth"}, '"depth"'),
+        (YARD / "0001.exr", {"camera_convention": "maya"}, '"maya" is not known'),
+        (YARD / "0001.exr", {"depth_kind": "z"}, "depth_kind = 'z'"),
+    ],
+)
+def test_what_cannot_be_read_is_said_so(path: Any, more: Any, words: str) -> None:
+    with pytest.raises(lightfit.LightfitError, match=words):
+        lightfit.read_exr(path, YARD / "scene.json", **more)
+
+
+def test_arrays_outlive_the_readback() -> None:
+    depth = lightfit.read_exr(YARD / "0001.exr", YARD / "scene.json").depth
+    copy = depth.copy()
+    for _ in range(4):
+        lightfit.read_exr(YARD / "0001.exr", YARD / "scene.json")
+    assert numpy.array_equal(depth, copy)
