@@ -23,7 +23,7 @@ check_layout() {
 
 # layer FOLDER ALLOWED...: of the project's own folders, FOLDER includes only those named.
 layer() {
-  local folder=$1 own_folders='geometry|optimizer|methods|render|proto|lightfit|io|cli|bench|tests' hit hits
+  local folder=$1 own_folders='geometry|optimizer|methods|render|proto|lightfit|io|calls|server|cli|python|fuzz|bench|tests' hit hits
   shift
   [[ -d $folder ]] || return 0
   hits=$(grep -rnE --include='*.h' --include='*.cc' "^#include \"($own_folders)/" "$folder" |
@@ -41,9 +41,13 @@ check_layers() {
   layer render geometry optimizer render
   layer proto proto lightfit
   layer io geometry optimizer proto lightfit io
-  layer cli geometry optimizer methods render proto lightfit io cli
-  layer examples geometry optimizer render
-  layer bench geometry optimizer methods render proto lightfit io cli bench tests
+  layer calls geometry optimizer proto lightfit io calls
+  layer server io calls lightfit server
+  layer cli geometry optimizer methods render proto lightfit io calls server cli
+  layer python geometry optimizer lightfit io calls python
+  layer examples geometry optimizer render lightfit
+  layer fuzz geometry optimizer render lightfit io calls fuzz
+  layer bench geometry optimizer methods render proto lightfit io calls server cli bench tests
   local hits
   hits=$(grep -rnE '^#include ["<](OpenImageIO|google/protobuf|CLI|grpc)' geometry optimizer || true)
   [[ -z $hits ]] || fault "$hits"$'\n'"geometry/ and optimizer/ know nothing of files and protobuf"
@@ -54,14 +58,15 @@ check_layers() {
 check_overviews() {
   say "overviews"
   local folder header
-  for folder in geometry optimizer methods render proto io cli bench tests examples docs scripts; do
+  for folder in geometry optimizer methods render proto io calls server cli python fuzz bench tests examples docs \
+    scripts; do
     [[ -d $folder ]] || continue
     [[ -e $folder/README.md ]] ||
       grep -rlsE "^(//|#) $folder/ : |^// $folder/[a-z_]+\.h : " "$folder" >/dev/null ||
       fault "$folder/: no overview; write $folder/README.md, or open its main header with" \
         "\"// $folder/NAME.h : what it is\""
   done
-  for header in {geometry,optimizer,methods,render,io}/*.h; do
+  for header in {geometry,optimizer,methods,render,io,calls,server}/*.h; do
     [[ ! -e $header ]] || head -n 1 "$header" | grep -q "^// $header\b" ||
       fault "$header:1: want the first line to be \"// $header\""
   done
