@@ -250,8 +250,6 @@ int Run(const Arguments& arguments) {
   const v1::FitRequest fit = FitRequestOf(input);
   const SummarySet set = SummariesOf(input);
   const v1::FitSummaryRequest fit_summary = SummaryRequestOf(set);
-  std::vector<Summary> summaries;
-  for (const LightSummary& light : set.lights) summaries.push_back(*SummaryOfTotal(light.total));
 
   Contest fits = {"Fit", static_cast<int64_t>(fit.ByteSizeLong())};
   fits.service = [&](int client) {
@@ -268,9 +266,9 @@ int Run(const Arguments& arguments) {
   };
   sums.library = [&](int) {
     on_pool([&] {
-      for (size_t i = 0; i < summaries.size(); ++i) {
-        const auto matrix = Fit(summaries[i], set.lights[i].total.light, kMap);
-        if (!matrix.ok()) std::exit(1);
+      for (const LightSummary& light : set.lights) {
+        const auto summary = SummaryOfTotal(light.total);
+        if (!summary.ok() || !Fit(*summary, light.total.light, kMap).ok()) std::exit(1);
       }
     });
   };

@@ -34,6 +34,24 @@ absl::StatusOr<TrackerOptions> TrackerOptionsOf(const v1::TrackSetup& setup) {
   return options;
 }
 
+v1::ShotLight ShotLightOf(const TrackedMatrix& tracked) {
+  v1::ShotLight shot;
+  shot.set_action(TrackerActionToProto(tracked.action));
+  shot.set_frames_kept(tracked.frames_kept);
+  return shot;
+}
+
+v1::ShotInfo ShotOf(int64_t number, const Tracker& tracker) {
+  v1::ShotInfo shot;
+  shot.set_mode(v1::SHOT_MODE_TRACKED);
+  shot.set_number(number);
+  *shot.mutable_tracker() = TrackerSettingsToProto(tracker.options());
+  for (const TrackedState& state : tracker.state()) {
+    *shot.add_tracker_state() = TrackedStateToProto(state);
+  }
+  return shot;
+}
+
 void SetStatus(const absl::Status& status, v1::Status* proto) {
   proto->set_code(static_cast<int>(status.code()));
   proto->set_message(std::string(status.message()));
@@ -72,17 +90,11 @@ absl::StatusOr<v1::FitResult> TrackSession::Track(const v1::TrackFrame& frame,
   for (const RequestLight& light : *lights) {
     if (light.status.ok()) usable.push_back(light.light);
   }
-  if (!given_state_.empty()) {
-    v1::ShotInfo given;
-    given.mutable_tracker_state()->Swap(&given_state_);
-    absl::StatusOr<std::vector<TrackedState>> state = TrackedStatesFromProto(given, usable, map_);
-    if (!state.ok()) return state.status();
-    tracker_.set_state(*std::move(state));
-  }
+  if (absl::Status status = TakeGivenState(usable); !status.ok()) return status;
   TrackerOptions options = tracker_.options();
   options.fit.stop = stop;
   tracker_.set_options(options);
-  TrackedMatrices tracked = tracker_.Update(pixels, usable, map_);
+  const TrackedMatrices tracked = tracker_.Update(pixels, usable, map_);
   if (stop.stop_requested()) return StoppedError();
 
   FitReport report;
@@ -95,37 +107,36 @@ absl::StatusOr<v1::FitResult> TrackSession::Track(const v1::TrackFrame& frame,
   std::vector<v1::ShotLight> shots;
   size_t next = 0;
   for (const RequestLight& light : *lights) {
+    const absl::StatusOr<TrackedMatrix>& matrix =
+        light.status.ok() ? tracked[next++] : absl::StatusOr<TrackedMatrix>(light.status);
     LightFit& fit = report.lights.emplace_back();
     fit.light = light.light;
     v1::ShotLight& shot = shots.emplace_back();
-    if (!light.status.ok()) {
-      fit.matrix = light.status;
-      continue;
-    }
-    absl::StatusOr<TrackedMatrix>& matrix = tracked[next++];
-    if (!matrix.ok()) {
+    if (matrix.ok()) {
+      fit.matrix = matrix->matrix;
+      shot = ShotLightOf(*matrix);
+    } else {
       fit.matrix = matrix.status();
-      continue;
     }
-    shot.set_action(TrackerActionToProto(matrix->action));
-    shot.set_frames_kept(matrix->frames_kept);
-    fit.matrix = std::move(matrix->matrix);
   }
   absl::StatusOr<v1::FitResult> result = FinishedResult(report, *lights);
   if (!result.ok()) return result.status();
   for (size_t i = 0; i < shots.size(); ++i) {
-    if (report.lights[i].matrix.ok()) {
-      *result->mutable_lights(static_cast<int>(i))->mutable_shot() = shots[i];
-    }
+    if (!report.lights[i].matrix.ok()) continue;
+    *result->mutable_lights(static_cast<int>(i))->mutable_shot() = shots[i];
   }
-  v1::ShotInfo& shot = *result->mutable_shot();
-  shot.set_mode(v1::SHOT_MODE_TRACKED);
-  shot.set_number(frame.number());
-  *shot.mutable_tracker() = TrackerSettingsToProto(options);
-  for (const TrackedState& state : tracker_.state()) {
-    *shot.add_tracker_state() = TrackedStateToProto(state);
-  }
+  *result->mutable_shot() = ShotOf(frame.number(), tracker_);
   return result;
+}
+
+absl::Status TrackSession::TakeGivenState(const std::vector<Light>& lights) {
+  if (given_state_.empty()) return absl::OkStatus();
+  v1::ShotInfo given;
+  given.mutable_tracker_state()->Swap(&given_state_);
+  absl::StatusOr<std::vector<TrackedState>> state = TrackedStatesFromProto(given, lights, map_);
+  if (!state.ok()) return state.status();
+  tracker_.set_state(*std::move(state));
+  return absl::OkStatus();
 }
 
 v1::TrackResult TrackSession::Update(const v1::TrackFrame& frame,

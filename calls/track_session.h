@@ -8,10 +8,13 @@
 #include <google/protobuf/repeated_field.h>
 
 #include <stop_token>
+#include <vector>
 
+#include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "calls/call_context.h"
 #include "geometry/clip.h"
+#include "geometry/light.h"
 #include "lightfit/v1/result.pb.h"
 #include "lightfit/v1/service.pb.h"
 #include "optimizer/readback.h"
@@ -36,13 +39,16 @@ class TrackSession {
                                       const Readback& pixels,
                                       const std::stop_token& stop);
 
+  // Once, when the first frame says what the lights are.
+  absl::Status TakeGivenState(const std::vector<Light>& lights);
+
   TrackSession(const TrackerOptions& options, MapSize map, const ClipConvention& clip)
       : tracker_(options), map_(map), clip_(clip) {}
 
   Tracker tracker_;
   MapSize map_;
   ClipConvention clip_;
-  // What an earlier stream remembered, until the first frame says what the lights are.
+  // What an earlier stream remembered, until it is taken.
   google::protobuf::RepeatedPtrField<v1::TrackedState> given_state_;
 };
 

@@ -1,5 +1,6 @@
 #include "cli/serve.h"
 
+#include <malloc.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -128,6 +129,13 @@ void DeclareLimits(CLI::App* app, ServeFlags* flags) {
                     "SECONDS",
                     "From a streamed read-back's first message to its last",
                     [limits](double s) { limits->upload_timeout = absl::Seconds(s); });
+  AddScaled<double>(app,
+                    group,
+                    "--idle-timeout-s",
+                    absl::ToDoubleSeconds(limits->idle_timeout),
+                    "SECONDS",
+                    "How long a Track stream may be without a frame",
+                    [limits](double s) { limits->idle_timeout = absl::Seconds(s); });
 }
 
 void DeclareOperation(CLI::App* app, ServeFlags* flags) {
@@ -171,6 +179,13 @@ void RaiseFileLimit() {
   setrlimit(RLIMIT_NOFILE, &limit);
 }
 
+// Has read-backs returned to the system when they go. By itself glibc learns from their size to
+// keep them, in a heap for each of gRPC's threads, and --memory-mib would not be all they take.
+void ReturnLargeMemory() {
+  constexpr int kLargeBytes = 4 << 20;
+  mallopt(M_MMAP_THRESHOLD, kLargeBytes);
+}
+
 int Fail(const absl::Status& status) {
   PrintError(status.message());
   return kExitBadInput;
@@ -192,6 +207,7 @@ std::function<int()> DeclareServe(CLI::App* app) {
 
 int RunServe(const ServeFlags& flags) {
   RaiseFileLimit();
+  ReturnLargeMemory();
   // Before any thread is made, so that none of them takes these signals.
   sigset_t signals;
   sigemptyset(&signals);

@@ -37,7 +37,6 @@ ServerParts::ServerParts(const ServerLimits& limits, Metrics* metrics, CallLog* 
       memory(limits.memory_bytes),
       calls(kNoLimit),
       streams(limits.max_streams),
-      uploads(limits.upload_timeout),
       pool(limits.num_threads, limits.max_queue) {}
 
 Call::Call(ServerParts* parts, const char* method, grpc::CallbackServerContext* context)
@@ -210,6 +209,13 @@ absl::Status LateUpload(const ServerLimits& limits) {
   return absl::DeadlineExceededError(
       absl::StrFormat("the read-back was not here after %s: send it faster, or make it smaller",
                       absl::FormatDuration(limits.upload_timeout)));
+}
+
+absl::Status IdleStream(const ServerLimits& limits) {
+  return absl::DeadlineExceededError(
+      absl::StrFormat("no frame for %s: open another stream when there is one, with the last "
+                      "tracker_state in setup.state",
+                      absl::FormatDuration(limits.idle_timeout)));
 }
 
 absl::Status CheckChunk(const v1::PixelChunk& chunk) {

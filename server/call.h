@@ -23,10 +23,10 @@
 #include "lightfit/v1/service.pb.h"
 #include "server/call_gate.h"
 #include "server/call_log.h"
+#include "server/deadline_watch.h"
 #include "server/memory_budget.h"
 #include "server/metrics.h"
 #include "server/server_options.h"
-#include "server/upload_watch.h"
 #include "server/work_pool.h"
 
 namespace lightfit {
@@ -44,7 +44,7 @@ struct ServerParts {
   MemoryBudget memory;
   CallGate calls;    // of one request
   CallGate streams;  // FitStream and Track
-  UploadWatch uploads;
+  DeadlineWatch deadlines;
   WorkPool pool;  // last: its threads work on the rest
 };
 
@@ -111,8 +111,10 @@ class Call {
   CallRecord record_;
 };
 
-// DeadlineExceeded of an upload that took longer than ServerLimits::upload_timeout.
+// DeadlineExceeded of an upload that took longer than ServerLimits::upload_timeout, and of a stream
+// that had no frame for ServerLimits::idle_timeout.
 absl::Status LateUpload(const ServerLimits& limits);
+absl::Status IdleStream(const ServerLimits& limits);
 
 // InvalidArgument when it is larger than kMaxChunkBytes.
 absl::Status CheckChunk(const v1::PixelChunk& chunk);

@@ -14,12 +14,14 @@ FitStreamCall::FitStreamCall(ServerParts* parts,
     End(status);
     return;
   }
-  call_.parts().uploads.Begin(this, [this] { End(LateUpload(call_.parts().limits)); });
+  const ServerLimits& limits = call_.parts().limits;
+  call_.parts().deadlines.Begin(
+      this, limits.upload_timeout, [this, &limits] { End(LateUpload(limits)); });
   StartRead(&part_);
 }
 
 void FitStreamCall::OnDone() {
-  call_.parts().uploads.End(this);
+  call_.parts().deadlines.End(this);
   delete this;
 }
 
@@ -70,7 +72,7 @@ absl::Status FitStreamCall::Begin(v1::FitRequest* request) {
 }
 
 absl::Status FitStreamCall::Submit() {
-  call_.parts().uploads.End(this);
+  call_.parts().deadlines.End(this);
   if (has_ended_) return absl::OkStatus();  // it was late; nothing else ends it from here on
   if (!pixels_.has_value()) {
     return absl::InvalidArgumentError("stream ended before its first message, want request");

@@ -6,6 +6,7 @@
 #include <grpcpp/health_check_service_interface.h>
 #include <grpcpp/resource_quota.h>
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -24,6 +25,9 @@ namespace lightfit {
 namespace {
 
 constexpr char kServiceName[] = "lightfit.v1.LightFit";
+
+// How long a drained server goes on refusing calls before it hangs up.
+constexpr absl::Duration kRefusalTime = absl::Milliseconds(200);
 
 absl::Status CheckPlainText(const ServerOptions& options, const ListenAddress& address) {
   if (options.tls.has_value() || options.allow_insecure || address.is_loopback) {
@@ -90,6 +94,9 @@ absl::Status ValidateServerLimits(const ServerLimits& limits) {
   }
   if (status.ok() && limits.upload_timeout <= absl::ZeroDuration()) {
     status = absl::InvalidArgumentError("--upload-timeout-s: want more than 0");
+  }
+  if (status.ok() && limits.idle_timeout <= absl::ZeroDuration()) {
+    status = absl::InvalidArgumentError("--idle-timeout-s: want more than 0");
   }
   return status;
 }
@@ -204,6 +211,9 @@ bool Server::Drain(absl::Duration delay, absl::Duration limit) {
   const bool calls_are_done = parts_->calls.calls.WaitUntilEmpty(deadline - absl::Now());
   const bool streams_are_done = parts_->calls.streams.WaitUntilEmpty(deadline - absl::Now());
   const int num_cancelled = num_calls();
+  // Calls that come between gRPC's first step of a shutdown and its last are told CANCELLED, after
+  // which clients do not try elsewhere. Those that hear UNAVAILABLE before do.
+  absl::SleepFor(std::min(limit, kRefusalTime));
   // What is left now is cancelled; of health's watchers and reflection's streams nobody waits for
   // an answer.
   parts_->server->Shutdown(std::chrono::system_clock::now());
@@ -211,7 +221,7 @@ bool Server::Drain(absl::Duration delay, absl::Duration limit) {
   parts_->log.Event(num_cancelled == 0 ? LogLevel::kInfo : LogLevel::kWarning,
                     "stop",
                     num_cancelled == 0 ? std::string("all calls were answered")
-                                       : absl::StrFormat("%d calls were cancelled after %s",
+                                       : absl::StrFormat("calls cancelled after %s: %d",
                                                          num_cancelled,
                                                          absl::FormatDuration(limit)));
   return calls_are_done && streams_are_done;

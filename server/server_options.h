@@ -23,7 +23,8 @@ struct ServerLimits {
   int64_t max_message_bytes = int64_t{16} << 20;  // of one message, >= 4096
   int64_t memory_bytes = int64_t{1} << 30;        // of requests and read-backs, all calls together
   absl::Duration upload_timeout =
-      absl::Seconds(60);  // from a read-back's first message to its last
+      absl::Seconds(60);                            // from a read-back's first message to its last
+  absl::Duration idle_timeout = absl::Minutes(10);  // of a Track stream between frames
 };
 
 struct ServerOptions {

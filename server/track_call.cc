@@ -21,11 +21,18 @@ TrackCall::TrackCall(ServerParts* parts, grpc::CallbackServerContext* context)
     End(status);
     return;
   }
+  WatchIdling();
   StartRead(&request_);
 }
 
+void TrackCall::WatchIdling() {
+  const ServerLimits& limits = call_.parts().limits;
+  call_.parts().deadlines.Begin(
+      this, limits.idle_timeout, [this, &limits] { End(IdleStream(limits)); });
+}
+
 void TrackCall::OnDone() {
-  call_.parts().uploads.End(this);
+  call_.parts().deadlines.End(this);
   delete this;
 }
 
@@ -43,7 +50,7 @@ void TrackCall::OnReadDone(bool ok) {
     GoOn();
     return;
   }
-  call_.parts().uploads.End(this);
+  call_.parts().deadlines.End(this);
   {
     const std::lock_guard lock(mutex_);
     if (has_ended_) return;
@@ -98,7 +105,9 @@ absl::Status TrackCall::BeginFrame(v1::TrackFrame* frame) {
   skips_chunks_ = !frame_status_.ok();
   is_frame_ready_ = skips_chunks_ || pixels_->is_complete();
   if (!is_frame_ready_) {
-    call_.parts().uploads.Begin(this, [this] { End(LateUpload(call_.parts().limits)); });
+    const ServerLimits& limits = call_.parts().limits;
+    call_.parts().deadlines.Begin(
+        this, limits.upload_timeout, [this, &limits] { End(LateUpload(limits)); });
   }
   return absl::OkStatus();
 }
@@ -133,6 +142,7 @@ void TrackCall::OnWriteDone(bool ok) {
     is_working_ = false;
   }
   if (ok) {
+    WatchIdling();
     GoOn();
   } else {
     End(absl::CancelledError("the client is gone"));

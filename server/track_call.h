@@ -37,6 +37,7 @@ class TrackCall final : public grpc::ServerBidiReactor<v1::TrackRequest, v1::Tra
   absl::Status TakePixels(const v1::PixelChunk& chunk);
   void Answer();  // on the pool
   void GoOn();    // to the next message, if there is to be one
+  void WatchIdling();
   void Drain();
   // The first to say so ends the stream. A frame in work is waited for.
   void End(const absl::Status& status);

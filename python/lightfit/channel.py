@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import ipaddress
 import json
+import time
 from pathlib import Path
 from typing import Any, List, Optional, Set, Tuple
 
@@ -91,6 +92,19 @@ def target_of(address: str) -> Tuple[str, bool]:
             "IPv6; want 10.0.0.1:50071,10.0.0.2:50071, or dns:///NAME:PORT for a name of many"
         )
     return f"ipv{versions.pop()}:{','.join(servers)}", True
+
+
+def pause(channel: Any, wait_s: float) -> None:
+    """Sleeps while the channel goes on connecting: where nobody waits for an answer or a state, gRPC
+    looks after its connections only every 5 s."""
+
+    def ignore(_: Any) -> None: ...
+
+    channel.subscribe(ignore)
+    try:
+        time.sleep(wait_s)
+    finally:
+        channel.unsubscribe(ignore)
 
 
 def error_of_call(error: Any, request_id: Optional[str]) -> LightfitError:

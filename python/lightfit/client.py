@@ -9,7 +9,7 @@ from typing import Any, Callable, Iterator, List, Optional, Tuple, Type
 import grpc
 
 from lightfit.calls import Calls, Track
-from lightfit.channel import SERVICE, TlsOptions, error_of_call, open_channel
+from lightfit.channel import SERVICE, TlsOptions, error_of_call, open_channel, pause
 from lightfit.errors import InvalidArgumentError
 from lightfit.pixels import Pixels
 from lightfit.remote_track import RemoteTrack
@@ -115,6 +115,7 @@ class Client(Calls):
             setup,
             self._policy,
             self._timeout_s if timeout_s is None else timeout_s,
+            self._pause,
             request_id,
         )
 
@@ -140,8 +141,14 @@ class Client(Calls):
                 running.cancel()  # does nothing when it is done; stops the search on Ctrl-C
 
         return call_with_retries(
-            attempt, self._policy, self._timeout_s if timeout_s is None else timeout_s
+            attempt,
+            self._policy,
+            self._timeout_s if timeout_s is None else timeout_s,
+            self._pause,
         )
+
+    def _pause(self, wait_s: float) -> None:
+        pause(self._channel, wait_s)
 
 
 def _request_id(request_id: Optional[str]) -> Tuple[str, List[Tuple[str, str]]]:

@@ -70,7 +70,7 @@ class _Stream:
 
 
 class RemoteTrack(Track):
-    """open_call: begins the stream of requests that it is given."""
+    """open_call: begins the stream of requests that it is given. sleep: between attempts, seconds."""
 
     def __init__(
         self,
@@ -78,6 +78,7 @@ class RemoteTrack(Track):
         setup: service_pb2.TrackSetup,
         policy: RetryPolicy,
         timeout_s: Optional[float],
+        sleep: Callable[[float], None],
         request_id: str,
     ) -> None:
         super().__init__()
@@ -85,6 +86,7 @@ class RemoteTrack(Track):
         self._setup = setup
         self._policy = policy
         self._timeout_s = timeout_s
+        self._sleep = sleep
         self._id = request_id
         self._stream: Optional[_Stream] = None
         self._is_closed = False
@@ -105,6 +107,7 @@ class RemoteTrack(Track):
             lambda remaining_s: self._attempt(frame, pixels, remaining_s),
             self._policy,
             self._timeout_s,
+            self._sleep,
         )
 
     def _attempt(

@@ -170,6 +170,20 @@ TEST(Limits, AnUploadThatStallsIsEnded) {
   WaitUntilIdle(server);
 }
 
+TEST(Limits, AStreamWithoutFramesIsEnded) {
+  ServerOptions options = QuietOptions();
+  options.limits.idle_timeout = absl::Milliseconds(200);
+  TestServer server(options);
+  grpc::ClientContext context;
+  const auto stream = server.stub().Track(&context);
+  v1::TrackRequest setup;
+  *setup.mutable_setup() = testing::WithMap(v1::TrackSetup());
+  stream->Write(setup);
+  const grpc::Status status = stream->Finish();
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::DEADLINE_EXCEEDED) << status.error_message();
+  EXPECT_THAT(status.error_message(), HasSubstr("no frame for 200ms"));
+}
+
 TEST(Start, SaysWhatIsWrongWithItsOptions) {
   const auto expect_refused = [](const ServerOptions& options, const std::string& words) {
     const auto server = Server::Start(options);
