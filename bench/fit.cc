@@ -171,23 +171,12 @@ void RegisterStages(const FitInput& input) {
     const std::optional<AffineFit> start = evaluator.Evaluate(Eigen::Vector3d::UnitZ());
     benchmark::DoNotOptimize(RotationLineSearch(evaluator, *start, published.line_search_rounds));
   };
-  std::vector<Eigen::Vector3d> hull_rays, receiver_rays;
+  std::vector<Eigen::Vector3d> hull_rays;
   for (const Eigen::Vector2d& ray : cover->hull) hull_rays.emplace_back(ray.x(), ray.y(), 1.0);
-  const AffineDepth affine_depth(input.input.camera, input.input.depth_kind);
-  for (int64_t i = 0; i < pixels; ++i) {
-    const int x = static_cast<int>(i % input.input.camera.width);
-    const int y = static_cast<int>(i / input.input.camera.width);
-    const double depth = input.input.depth[i];
-    if (!affine_depth.IsSurface(depth)) continue;
-    receiver_rays.push_back(samples->ray_from_screen *
-                            Eigen::Vector4d(x + 0.5, y + 0.5, affine_depth.At(x, y, depth), 1.0));
-  }
   const double min_w = published.min_w;
   auto* as_published = Register(
-      "BM_Search/as_published/" + input.name,
-      pixels,
-      [samples, search, problem, min_w, receiver_rays = std::move(receiver_rays)] {
-        SampleEvaluator evaluator(*samples, receiver_rays, MetricWeights(), problem, min_w);
+      "BM_Search/as_published/" + input.name, pixels, [samples, search, problem, min_w, receivers] {
+        SampleEvaluator evaluator(*samples, *receivers, MetricWeights(), problem, min_w);
         search(evaluator);
       });
   if (pixels > kMaxRepeated) as_published->Iterations(1)->Repetitions(1);

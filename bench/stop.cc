@@ -34,6 +34,7 @@
 #include "optimizer/map_shapes.h"
 #include "optimizer/tolerance.h"
 #include "optimizer/tracker.h"
+#include "tests/optimizer/hanging_lamp.h"
 
 namespace lightfit {
 namespace {
@@ -219,6 +220,18 @@ void MeasureSize(const Arguments& arguments, MapSize size, StopTable* table) {
   });
 }
 
+// Boxes of pixels reach around the lamp, so that its cover takes every receiver one by one.
+void MeasureHangingLamp(MapSize size, StopTable* table) {
+  const testing::HangingLamp lamp(size.width, size.height);
+  table->Measure(absl::StrCat("FitLight, focused, close lamp, ", size.width, "x", size.height),
+                 [&](const std::stop_token& stop) {
+                   FitOptions options;
+                   options.search = Search::kFocused;
+                   options.stop = stop;
+                   return FitLight(lamp.readback.View(), lamp.light, kMap, options).status();
+                 });
+}
+
 // From summaries, whose work does not depend on the size of the read-back.
 void MeasureSummaries(const Arguments& arguments, StopTable* table) {
   const Input input = BoxInput(arguments.seed, 180, 180, kMaxLights);
@@ -257,6 +270,7 @@ void Run(const Arguments& arguments) {
   MeasureSummaries(arguments, &table);
   for (const MapSize size : {MapSize{180, 180}, MapSize{1920, 1080}, MapSize{3840, 2160}}) {
     MeasureSize(arguments, size, &table);
+    MeasureHangingLamp(size, &table);
   }
   std::printf("%d lights, seed %d\n\n%s",
               arguments.num_lights,

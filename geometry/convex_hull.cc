@@ -1,7 +1,6 @@
 #include "geometry/convex_hull.h"
 
 #include <algorithm>
-#include <array>
 #include <iterator>
 
 namespace lightfit {
@@ -11,39 +10,13 @@ namespace {
 // Above this many points it pays to throw away most of the inner ones before sorting.
 constexpr size_t kFilterFrom = 32;
 
-// The points without those strictly inside the octagon of the points furthest in eight directions
-// (Akl & Toussaint 1978). None of them can be a vertex of the hull.
+// The points without most of those that cannot be vertices of the hull.
 ScratchVector<Eigen::Vector2d> WithoutInnerPoints(absl::Span<const Eigen::Vector2d> points) {
-  // Furthest towards -y, +x-y, +x, +x+y, +y, -x+y, -x, -x-y: counter-clockwise.
-  std::array<Eigen::Vector2d, 8> corner;
-  corner.fill(points.front());
-  for (const Eigen::Vector2d& point : points) {
-    const double x = point.x(), y = point.y();
-    if (y < corner[0].y()) corner[0] = point;
-    if (x - y > corner[1].x() - corner[1].y()) corner[1] = point;
-    if (x > corner[2].x()) corner[2] = point;
-    if (x + y > corner[3].x() + corner[3].y()) corner[3] = point;
-    if (y > corner[4].y()) corner[4] = point;
-    if (y - x > corner[5].y() - corner[5].x()) corner[5] = point;
-    if (x < corner[6].x()) corner[6] = point;
-    if (x + y < corner[7].x() + corner[7].y()) corner[7] = point;
-  }
-  // Sides of no length hold nothing back: every point is "not left of" them.
-  std::array<Eigen::Vector2d, 8> side;
-  int num_sides = 0;
-  for (int i = 0; i < 8; ++i) {
-    const Eigen::Vector2d along = corner[(i + 1) % 8] - corner[i];
-    if (along == Eigen::Vector2d::Zero()) continue;
-    corner[num_sides] = corner[i];
-    side[num_sides++] = along;
-  }
-  const auto inside = [&](const Eigen::Vector2d& point) {
-    bool left_of_all = num_sides >= 3;
-    for (int i = 0; i < num_sides; ++i) left_of_all &= Cross(side[i], point - corner[i]) > 0.0;
-    return left_of_all;
-  };
+  Octagon octagon;
+  for (const Eigen::Vector2d& point : points) octagon.Stretch(point);
   ScratchVector<Eigen::Vector2d> outer;
-  std::remove_copy_if(points.begin(), points.end(), std::back_inserter(outer), inside);
+  std::remove_copy_if(
+      points.begin(), points.end(), std::back_inserter(outer), OctagonInterior(octagon));
   return outer;
 }
 
@@ -74,6 +47,18 @@ Polygon ConvexHull(absl::Span<const Eigen::Vector2d> points) {
   for (auto point = sorted.rbegin() + 1; point != sorted.rend(); ++point) add(*point, lower);
   hull.pop_back();  // the first point again
   return hull;
+}
+
+void ConvexHullBuilder::DropInnerPoints() {
+  const OctagonInterior is_inner(octagon_);
+  points_.erase(std::remove_if(points_.begin() + num_outer_, points_.end(), is_inner),
+                points_.end());
+  if (points_.size() >= most_outer_) {
+    points_.erase(std::remove_if(points_.begin(), points_.end(), is_inner), points_.end());
+    if (points_.size() >= most_outer_ / 2) points_ = ConvexHull(points_);
+    most_outer_ = std::max(kMostOuter, 4 * points_.size());
+  }
+  num_outer_ = points_.size();
 }
 
 double Area(const Polygon& polygon) {

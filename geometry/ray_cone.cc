@@ -15,12 +15,6 @@ namespace {
 // With this margin the mean of the rays is as good an axis as any.
 constexpr double kGoodMargin = 0.3;
 
-double Margin(absl::Span<const Eigen::Vector3d> unit_rays, const Eigen::Vector3d& axis) {
-  double margin = std::numeric_limits<double>::infinity();
-  for (const Eigen::Vector3d& ray : unit_rays) margin = std::min(margin, axis.dot(ray));
-  return margin;
-}
-
 // The rays whose hull has the nearest point. Four do; one more is under way, and rounding may leave
 // some that depend on each other.
 constexpr int kMaxCorral = 7;
@@ -43,24 +37,17 @@ Weights AffineMinimizer(absl::Span<const Eigen::Vector3d> corral) {
 
 // Wolfe (1976), "Finding the nearest point in a polytope". The hull's point nearest to the origin
 // is a convex combination of at most four rays, the corral.
-Eigen::Vector3d NearestPointOfHull(absl::Span<const Eigen::Vector3d> unit_rays) {
+Eigen::Vector3d NearestPointOfHull(const Eigen::Vector3d& first, LowestUnitRay lowest_along) {
   constexpr int kMaxRounds = 200;
   constexpr double kTolerance = 1e-12;
-  ScratchVector<Eigen::Vector3d> corral = {unit_rays[0]};
+  ScratchVector<Eigen::Vector3d> corral = {first};
   Weights weights = Weights::Ones(1);
-  Eigen::Vector3d nearest = unit_rays[0];
+  Eigen::Vector3d nearest = first;
   for (int round = 0; round < kMaxRounds; ++round) {
-    const Eigen::Vector3d* lowest = &unit_rays[0];
-    double lowest_height = std::numeric_limits<double>::infinity();
-    for (const Eigen::Vector3d& ray : unit_rays) {
-      const double height = nearest.dot(ray);
-      if (height < lowest_height) {
-        lowest_height = height;
-        lowest = &ray;
-      }
-    }
-    if (lowest_height >= nearest.squaredNorm() - kTolerance || corral.size() == kMaxCorral) break;
-    corral.push_back(*lowest);
+    const Eigen::Vector3d lowest = lowest_along(nearest);
+    const bool is_nearest = nearest.dot(lowest) >= nearest.squaredNorm() - kTolerance;
+    if (is_nearest || corral.size() == kMaxCorral) break;
+    corral.push_back(lowest);
     weights.conservativeResize(weights.size() + 1);
     weights(weights.size() - 1) = 0.0;
     // Step towards the affine minimiser; drop the rays whose weight reaches zero on the way.
@@ -93,24 +80,43 @@ Eigen::Vector3d NearestPointOfHull(absl::Span<const Eigen::Vector3d> unit_rays) 
 
 }  // namespace
 
-std::optional<Eigen::Vector3d> FeasibleAxis(absl::Span<const Eigen::Vector3d> rays) {
-  if (rays.empty()) return std::nullopt;
+std::optional<Eigen::Vector3d> FeasibleAxis(absl::Span<const Eigen::Vector3d> rays,
+                                            const std::stop_token& stop) {
+  constexpr size_t kBlock = 4096;  // between two looks at whether to stop
   ScratchVector<Eigen::Vector3d> unit_rays;
   unit_rays.reserve(rays.size());
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  UnitRaySum sum;
   for (const Eigen::Vector3d& ray : rays) {
+    if (unit_rays.size() % kBlock == 0 && stop.stop_requested()) return std::nullopt;
     unit_rays.push_back(ray.normalized());
-    sum += unit_rays.back();
+    sum.Add(unit_rays.back());
   }
-  if (!sum.allFinite()) return std::nullopt;
-  if (sum.norm() > kGoodMargin * static_cast<double>(rays.size())) {
-    const Eigen::Vector3d mean = sum.normalized();
-    if (Margin(unit_rays, mean) >= kGoodMargin) return mean;
+  return FeasibleAxis(sum, [&unit_rays, &stop](const Eigen::Vector3d& axis) {
+    const Eigen::Vector3d* lowest = &unit_rays[0];
+    if (stop.stop_requested()) return *lowest;
+    double lowest_height = std::numeric_limits<double>::infinity();
+    for (const Eigen::Vector3d& ray : unit_rays) {
+      const double height = axis.dot(ray);
+      if (height < lowest_height) {
+        lowest_height = height;
+        lowest = &ray;
+      }
+    }
+    return *lowest;
+  });
+}
+
+std::optional<Eigen::Vector3d> FeasibleAxis(const UnitRaySum& rays, LowestUnitRay lowest) {
+  if (rays.count == 0 || !rays.sum.allFinite()) return std::nullopt;
+  const auto margin = [&lowest](const Eigen::Vector3d& axis) { return axis.dot(lowest(axis)); };
+  if (rays.sum.norm() > kGoodMargin * static_cast<double>(rays.count)) {
+    const Eigen::Vector3d mean = rays.sum.normalized();
+    if (margin(mean) >= kGoodMargin) return mean;
   }
-  const Eigen::Vector3d nearest = NearestPointOfHull(unit_rays);
+  const Eigen::Vector3d nearest = NearestPointOfHull(rays.first, lowest);
   if (!(nearest.norm() >= kMinConeMargin)) return std::nullopt;
   const Eigen::Vector3d axis = nearest.normalized();
-  if (!(Margin(unit_rays, axis) >= 0.5 * kMinConeMargin)) return std::nullopt;
+  if (!(margin(axis) >= 0.5 * kMinConeMargin)) return std::nullopt;
   return axis;
 }
 

@@ -6,8 +6,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <optional>
+#include <stop_token>
 
+#include "absl/functional/function_ref.h"
 #include "absl/types/span.h"
 #include "geometry/polygon.h"
 
@@ -21,8 +24,24 @@ inline constexpr double kMinConeMargin = 0.02;
 // A unit vector p with p.X > 0 on every ray, or nothing when there is none by kMinConeMargin
 // (receivers all around a point light). The mean of the unit rays when that has room to spare, else
 // the axis of the smallest cone around them (the point of their hull nearest to the origin, by
-// Wolfe's algorithm). No rays give nothing.
-std::optional<Eigen::Vector3d> FeasibleAxis(absl::Span<const Eigen::Vector3d> rays);
+// Wolfe's algorithm). No rays give nothing. Of no use once `stop` says so.
+std::optional<Eigen::Vector3d> FeasibleAxis(absl::Span<const Eigen::Vector3d> rays,
+                                            const std::stop_token& stop = {});
+
+// The same of rays that are too many to keep.
+struct UnitRaySum {
+  Eigen::Vector3d first = Eigen::Vector3d::Zero();
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  int64_t count = 0;
+
+  void Add(const Eigen::Vector3d& unit_ray) {
+    if (count++ == 0) first = unit_ray;
+    sum += unit_ray;
+  }
+};
+// Of all unit rays the one lowest along an axis, that is with the least dot product.
+using LowestUnitRay = absl::FunctionRef<Eigen::Vector3d(const Eigen::Vector3d& axis)>;
+std::optional<Eigen::Vector3d> FeasibleAxis(const UnitRaySum& rays, LowestUnitRay lowest);
 
 // Coordinates N in which the rays fill a square of side 2 around the origin at X_3 = 1. `hull` is
 // the convex hull of the rays seen along the third axis of `frame_from_ray`, as (x/z, y/z). Its

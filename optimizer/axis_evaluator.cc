@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "geometry/convex_hull.h"
-#include "geometry/scratch.h"
 #include "optimizer/stop.h"
 
 namespace lightfit {
@@ -33,31 +32,71 @@ Eigen::Vector3d SummaryEvaluator::Gradient(const AffineFit& fit) {
 }
 
 SampleEvaluator::SampleEvaluator(const Samples& samples,
-                                 absl::Span<const Eigen::Vector3d> receiver_rays,
+                                 absl::Span<const Eigen::Vector3d> hull_rays,
                                  const MetricWeights& metric,
                                  const AffineProblem& problem,
                                  double min_w)
     : AxisEvaluator(problem, min_w),
       samples_(samples),
-      receiver_rays_(receiver_rays),
+      rays_(hull_rays.begin(), hull_rays.end()),
       metric_(metric) {}
+
+SampleEvaluator::SampleEvaluator(const Samples& samples,
+                                 const Receivers& receivers,
+                                 const MetricWeights& metric,
+                                 const AffineProblem& problem,
+                                 double min_w)
+    : AxisEvaluator(problem, min_w), samples_(samples), receivers_(&receivers), metric_(metric) {
+  // A dozen megabytes. Beyond that it takes no longer to work them out each time.
+  constexpr int64_t kMostRaysKept = int64_t{1} << 19;
+  if (receivers.tiles.num_surfaces > kMostRaysKept) return;
+  rays_.reserve(receivers.tiles.num_surfaces);
+  ForEachRay([this](const Eigen::Vector3d& ray) {
+    rays_.push_back(ray);
+    return true;
+  });
+  receivers_ = nullptr;
+}
+
+template <typename Visitor>
+void SampleEvaluator::ForEachRay(const Visitor& visit) const {
+  if (receivers_ == nullptr) {
+    for (size_t i = 0; i < rays_.size(); ++i) {
+      if (IsStopped(problem().stop, i) || !visit(rays_[i])) return;
+    }
+    return;
+  }
+  bool goes_on = true;
+  for (const DepthTile& tile : receivers_->tiles.grids[0].tiles) {
+    if (!goes_on || problem().stop.stop_requested()) return;
+    if (tile.num_surfaces == 0) continue;
+    ForEachSurface(receivers_->readback,
+                   receivers_->affine_depth,
+                   receivers_->tiles.filter,
+                   tile,
+                   [&](int x, int y, double d) {
+                     const Eigen::Vector4d screen(x + 0.5, y + 0.5, d, 1.0);
+                     goes_on = goes_on && visit(samples_.ray_from_screen * screen);
+                   });
+  }
+}
 
 std::optional<AffineFit> SampleEvaluator::EvaluateScaled(const Eigen::Vector3d& axis) {
   // Project every receiver and take the hull, in the plane X_3 = 1 seen along `axis`.
   Eigen::Matrix3d plane_from_ray = Eigen::Matrix3d::Identity();
   plane_from_ray.row(2) = axis;
-  ScratchVector<Eigen::Vector2d> points;
-  points.reserve(receiver_rays_.size());
-  for (size_t i = 0; i < receiver_rays_.size(); ++i) {
-    if (IsStopped(problem().stop, i)) return std::nullopt;
-    const Eigen::Vector3d& ray = receiver_rays_[i];
+  ConvexHullBuilder builder;
+  bool is_usable = true;
+  ForEachRay([&](const Eigen::Vector3d& ray) {
     const double w = axis.dot(ray);
-    if (!(w >= min_w() * ray.z())) return std::nullopt;
-    points.emplace_back(ray.x() / w, ray.y() / w);
-  }
+    is_usable = w >= min_w() * ray.z();
+    if (is_usable) builder.Add({ray.x() / w, ray.y() / w});
+    return is_usable;
+  });
+  if (!is_usable || problem().stop.stop_requested()) return std::nullopt;
   // Back to normalised rays, which is where FitAffine takes its hull. Order and convexity hold.
   const Eigen::Matrix3d ray_from_plane = plane_from_ray.inverse();
-  Polygon hull = ConvexHull(points);
+  Polygon hull = builder.Hull();
   for (Eigen::Vector2d& vertex : hull) {
     vertex = (ray_from_plane * vertex.homogeneous()).hnormalized();
   }

@@ -9,7 +9,9 @@
 #include <optional>
 
 #include "absl/types/span.h"
+#include "geometry/scratch.h"
 #include "optimizer/affine.h"
+#include "optimizer/receivers.h"
 #include "optimizer/summary.h"
 
 namespace lightfit {
@@ -62,10 +64,16 @@ class SummaryEvaluator final : public AxisEvaluator {
 // all samples. FitOptions::sample_by_sample; the yardstick for the summary's speed and correctness.
 class SampleEvaluator final : public AxisEvaluator {
  public:
-  // `receiver_rays` are those of all receivers in the samples' coordinates. They and the samples
-  // must outlive the object.
+  // Samples and receivers must outlive the object.
   SampleEvaluator(const Samples& samples,
-                  absl::Span<const Eigen::Vector3d> receiver_rays,
+                  const Receivers& receivers,
+                  const MetricWeights& metric,
+                  const AffineProblem& problem,
+                  double min_w);
+
+  // The same where `hull_rays`, in the samples' coordinates, are known to have the receivers' hull.
+  SampleEvaluator(const Samples& samples,
+                  absl::Span<const Eigen::Vector3d> hull_rays,
                   const MetricWeights& metric,
                   const AffineProblem& problem,
                   double min_w);
@@ -75,8 +83,13 @@ class SampleEvaluator final : public AxisEvaluator {
  private:
   std::optional<AffineFit> EvaluateScaled(const Eigen::Vector3d& axis) override;
 
+  // Calls visit(ray) for every ray until it returns false, or a little longer.
+  template <typename Visitor>
+  void ForEachRay(const Visitor& visit) const;
+
   const Samples& samples_;
-  absl::Span<const Eigen::Vector3d> receiver_rays_;
+  const Receivers* receivers_ = nullptr;  // whose rays are too many to keep; else null
+  ScratchVector<Eigen::Vector3d> rays_;
   MetricWeights metric_;
 };
 

@@ -19,26 +19,6 @@ namespace lightfit {
 
 namespace {
 
-// Rays of all receivers in normalised coordinates, for SampleEvaluator.
-ScratchVector<Eigen::Vector3d> ReceiverRays(const Receivers& receivers,
-                                            const Eigen::Matrix<double, 3, 4>& ray_from_screen,
-                                            const std::stop_token& stop) {
-  ScratchVector<Eigen::Vector3d> rays;
-  rays.reserve(receivers.tiles.num_surfaces);
-  for (const DepthTile& tile : receivers.tiles.grids[0].tiles) {
-    if (stop.stop_requested()) break;
-    if (tile.num_surfaces == 0) continue;
-    ForEachSurface(receivers.readback,
-                   receivers.affine_depth,
-                   receivers.tiles.filter,
-                   tile,
-                   [&](int x, int y, double d) {
-                     rays.push_back(ray_from_screen * Eigen::Vector4d(x + 0.5, y + 0.5, d, 1.0));
-                   });
-  }
-  return rays;
-}
-
 // The receivers' mean, or the middle of their cone where the mean cannot be used.
 std::optional<AffineFit> StartFit(const Summary& summary, AxisEvaluator& evaluator) {
   const Eigen::Vector3d mean =
@@ -53,14 +33,12 @@ absl::StatusOr<SearchOutcome> SearchSquares(const SearchInputs& inputs,
                                             MapSize map,
                                             const FitOptions& options) {
   const AffineProblem problem = MakeAffineProblem(summary, map, options);
-  ScratchVector<Eigen::Vector3d> receiver_rays;
   std::optional<SampleEvaluator> by_samples;
   std::optional<SummaryEvaluator> by_summary;
   AxisEvaluator* evaluator = nullptr;
   if (options.sample_by_sample && inputs.samples != nullptr && inputs.receivers != nullptr) {
-    receiver_rays = ReceiverRays(*inputs.receivers, inputs.samples->ray_from_screen, options.stop);
-    evaluator =
-        &by_samples.emplace(*inputs.samples, receiver_rays, summary.metric, problem, options.min_w);
+    evaluator = &by_samples.emplace(
+        *inputs.samples, *inputs.receivers, summary.metric, problem, options.min_w);
   } else {
     evaluator = &by_summary.emplace(summary, problem, options.min_w);
   }

@@ -3,23 +3,21 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <optional>
 #include <utility>
 
 #include "absl/strings/str_format.h"
 #include "geometry/convex_hull.h"
-#include "geometry/inside_test.h"
 #include "geometry/ray_cone.h"
 #include "geometry/scratch.h"
+#include "optimizer/cover_hull.h"
+#include "optimizer/covered_surfaces.h"
 #include "optimizer/stop.h"
 
 namespace lightfit {
 
 namespace {
-
-using Matrix34d = Eigen::Matrix<double, 3, 4>;
 
 absl::Status FlatError(const Light& light) {
   return absl::FailedPreconditionError(absl::StrFormat(
@@ -28,173 +26,40 @@ absl::Status FlatError(const Light& light) {
       light.name));
 }
 
-// The corners of a tile's box of pixel centres and affine depths, as screen points (x, y, d, 1).
-std::array<Eigen::Vector4d, 8> Corners(const DepthTile& tile) {
-  std::array<Eigen::Vector4d, 8> corners;
-  int i = 0;
-  for (const double d : {tile.d_min, tile.d_max}) {
-    for (const double y : {tile.y_begin + 0.5, tile.y_end - 0.5}) {
-      for (const double x : {tile.x_begin + 0.5, tile.x_end - 0.5}) {
-        corners[i++] = Eigen::Vector4d(x, y, d, 1.0);
-      }
-    }
-  }
-  return corners;
-}
-
-// The receivers that are to be covered, and when to stop looking at them.
-struct CoveredSurfaces {
-  const Receivers& receivers;
-  const DepthTiles& tiles;
-  const std::stop_token& stop;
-
-  template <typename Visitor>
-  void ForEach(const DepthTile& tile, const Visitor& visit) const {
-    ForEachSurface(receivers.readback, receivers.affine_depth, tiles.filter, tile, visit);
-  }
-};
-
-// The first covered receiver of every tile that has any, as screen points (x, y, d, 1).
-ScratchVector<Eigen::Vector4d> OneReceiverPerTile(const CoveredSurfaces& covered, size_t grid) {
-  const Readback& readback = covered.receivers.readback;
-  const uint32_t mask = covered.tiles.filter.shadow_mask;
-  const auto first_receiver = [&](const DepthTile& tile) -> Eigen::Vector4d {
-    for (int y = tile.y_begin; y < tile.y_end; ++y) {
-      for (int x = tile.x_begin; x < tile.x_end; ++x) {
-        const size_t pixel = static_cast<size_t>(y) * readback.width() + x;
-        if (mask != 0 && (readback.shadow_bits[pixel] & mask) == 0) continue;
-        const double depth = readback.depth[pixel];
-        if (!covered.receivers.affine_depth.IsSurface(depth)) continue;
-        return {x + 0.5, y + 0.5, covered.receivers.affine_depth.At(x, y, depth), 1.0};
-      }
-    }
-    return Eigen::Vector4d::Zero();  // not reached: the tile has a receiver
-  };
-  ScratchVector<Eigen::Vector4d> found;
-  for (const DepthTile& tile : covered.tiles.grids[grid].tiles) {
-    if (covered.stop.stop_requested()) break;
-    if (tile.num_surfaces > 0) found.push_back(first_receiver(tile));
-  }
-  return found;
-}
-
-// The convex hull of the rays of one read-back, seen along the third axis of a frame.
-class HullBuilder {
- public:
-  HullBuilder(const CoveredSurfaces& covered, const Matrix34d& frame_from_screen)
-      : covered_(covered), frame_from_screen_(frame_from_screen) {}
-
-  Polygon ExactHull() {
-    // One receiver of every middling tile gives a first hull that is not far off.
-    const size_t seeds = covered_.tiles.grids.size() > 1 ? 1 : 0;
-    for (const Eigen::Vector4d& receiver : OneReceiverPerTile(covered_, seeds)) {
-      pending_.push_back(Project(receiver));
-    }
-    UpdateHull();
-    // Then every tile whose box reaches out of what is known is looked into, coarse to fine.
-    const size_t coarsest = covered_.tiles.grids.size() - 1;
-    for (size_t i = 0; i < covered_.tiles.grids[coarsest].tiles.size(); ++i) Visit(coarsest, i);
-    UpdateHull();
-    return std::move(hull_);
-  }
-
- private:
-  static constexpr size_t kMaxPending = 128;
-
-  Eigen::Vector2d Project(const Eigen::Vector4d& screen) const {
-    return (frame_from_screen_ * screen).hnormalized();
-  }
-
-  // Looks into a tile unless its box is inside the hull. Also where InsideTest does not recognise
-  // it.
-  void Visit(size_t level, size_t index) {
-    const TileGrid& grid = covered_.tiles.grids[level];
-    const DepthTile& tile = grid.tiles[index];
-    if (tile.num_surfaces == 0 || covered_.stop.stop_requested()) return;
-    const std::array<Eigen::Vector4d, 8> corners = Corners(tile);
-    if (std::all_of(corners.begin(), corners.end(), [this](const Eigen::Vector4d& corner) {
-          return (*inside_)(Project(corner));
-        })) {
-      return;
-    }
-    if (level == 0) {
-      covered_.ForEach(tile, [this](int x, int y, double d) {
-        const Eigen::Vector2d point = Project({x + 0.5, y + 0.5, d, 1.0});
-        if (!(*inside_)(point)) pending_.push_back(point);
-      });
-      if (pending_.size() > kMaxPending) UpdateHull();
-      return;
-    }
-    constexpr int kSide = DepthTiles::kTilesPerSide;
-    const TileGrid& finer = covered_.tiles.grids[level - 1];
-    const int first_row = static_cast<int>(index) / grid.columns * kSide;
-    const int first_column = static_cast<int>(index) % grid.columns * kSide;
-    for (int row = first_row; row < std::min(first_row + kSide, finer.rows); ++row) {
-      for (int column = first_column; column < std::min(first_column + kSide, finer.columns);
-           ++column) {
-        Visit(level - 1, static_cast<size_t>(row) * finer.columns + column);
-      }
-    }
-  }
-
-  void UpdateHull() {
-    pending_.insert(pending_.end(), hull_.begin(), hull_.end());
-    hull_ = ConvexHull(pending_);
-    pending_.clear();
-    inside_.emplace(hull_);
-  }
-
-  const CoveredSurfaces& covered_;
-  const Matrix34d frame_from_screen_;
-  ScratchVector<Eigen::Vector2d> pending_;  // receivers that may lie outside hull_
-  Polygon hull_;
-  std::optional<InsideTest> inside_;  // of hull_
-};
-
-// A box for every receiver: the way out where tiles reach around the light and receivers do not.
-TileGrid PixelGrid(const CoveredSurfaces& covered) {
-  TileGrid pixels;
-  for (const DepthTile& tile : covered.tiles.grids[0].tiles) {
-    if (covered.stop.stop_requested()) break;
-    if (tile.num_surfaces == 0) continue;
-    covered.ForEach(tile, [&pixels](int x, int y, double d) {
-      pixels.tiles.push_back({x, y, x + 1, y + 1, d, d, 1});
-    });
-  }
-  return pixels;
-}
-
 // An axis that has all boxes of the grid in front of it.
-std::optional<Eigen::Vector3d> AxisOfBoxes(const TileGrid& grid, const Matrix34d& ray_from_screen) {
+std::optional<Eigen::Vector3d> AxisOfBoxes(const TileGrid& grid,
+                                           const Matrix34d& ray_from_screen,
+                                           const std::stop_token& stop) {
   ScratchVector<Eigen::Vector3d> rays;
   rays.reserve(8 * grid.tiles.size());
-  for (const DepthTile& tile : grid.tiles) {
-    if (tile.num_surfaces == 0) continue;
+  ForEachTile(grid, stop, [&](const DepthTile& tile) {
     for (const Eigen::Vector4d& corner : Corners(tile)) rays.push_back(ray_from_screen * corner);
-  }
-  return FeasibleAxis(rays);
+  });
+  return FeasibleAxis(rays, stop);
 }
 
-Eigen::Vector3d MeanRay(const TileGrid& grid, const Matrix34d& ray_from_screen) {
+Eigen::Vector3d MeanRay(const TileGrid& grid,
+                        const Matrix34d& ray_from_screen,
+                        const std::stop_token& stop) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const DepthTile& tile : grid.tiles) {
-    if (tile.num_surfaces == 0) continue;
+  ForEachTile(grid, stop, [&](const DepthTile& tile) {
     const Eigen::Vector4d middle(0.5 * (tile.x_begin + tile.x_end),
                                  0.5 * (tile.y_begin + tile.y_end),
                                  0.5 * (tile.d_min + tile.d_max),
                                  1.0);
     sum += tile.num_surfaces * (ray_from_screen * middle).normalized();
-  }
+  });
   return sum.normalized();
 }
 
 // The boxes that hold rays close to the covered ones, in four times their square, and perhaps some
 // more: all but those whose corners lie beyond one and the same side of it.
-TileGrid BoxesAlong(const TileGrid& grid, const Matrix34d& normalized_from_screen) {
+TileGrid BoxesAlong(const TileGrid& grid,
+                    const Matrix34d& normalized_from_screen,
+                    const std::stop_token& stop) {
   constexpr double kCloseBy = 4.0;
   TileGrid close;
-  for (const DepthTile& tile : grid.tiles) {
-    if (tile.num_surfaces == 0) continue;
+  ForEachTile(grid, stop, [&](const DepthTile& tile) {
     // Bits: which sides all corners seen so far are beyond.
     unsigned beyond = 0xf;
     for (const Eigen::Vector4d& corner : Corners(tile)) {
@@ -204,23 +69,49 @@ TileGrid BoxesAlong(const TileGrid& grid, const Matrix34d& normalized_from_scree
                 (ray.y() > limit ? 4u : 0u) | (-ray.y() > limit ? 8u : 0u);
     }
     if (beyond == 0) close.tiles.push_back(tile);
-  }
+  });
   return close;
 }
 
-// The range over all boxes of a linear function of the world point, which is extreme at corners.
-DepthRange RangeOverBoxes(const TileGrid& grid,
-                          const Eigen::RowVector4d& depth_from_screen,
-                          const Eigen::RowVector4d& scale_from_screen) {
-  DepthRange range = {std::numeric_limits<double>::infinity(),
-                      -std::numeric_limits<double>::infinity()};
-  for (const DepthTile& tile : grid.tiles) {
-    if (tile.num_surfaces == 0) continue;
-    for (const Eigen::Vector4d& corner : Corners(tile)) {
-      const double depth = depth_from_screen.dot(corner) / scale_from_screen.dot(corner);
-      range = {std::min(range.near, depth), std::max(range.far, depth)};
-    }
+// A linear function of the world point, on the screen.
+struct DepthOnScreen {
+  Eigen::RowVector4d depth_from_screen, scale_from_screen;
+
+  double At(const Eigen::Vector4d& screen) const {
+    return depth_from_screen.dot(screen) / scale_from_screen.dot(screen);
   }
+};
+
+constexpr DepthRange kNoDepth = {std::numeric_limits<double>::infinity(),
+                                 -std::numeric_limits<double>::infinity()};
+
+DepthRange Extended(const DepthRange& range, double depth) {
+  return {std::min(range.near, depth), std::max(range.far, depth)};
+}
+
+// Extreme at corners.
+DepthRange RangeOverBox(const DepthTile& tile, const DepthOnScreen& depth, DepthRange range) {
+  for (const Eigen::Vector4d& corner : Corners(tile)) range = Extended(range, depth.At(corner));
+  return range;
+}
+
+DepthRange RangeOverBoxes(const TileGrid& grid,
+                          const DepthOnScreen& depth,
+                          const std::stop_token& stop) {
+  DepthRange range = kNoDepth;
+  ForEachTile(grid, stop, [&](const DepthTile& tile) { range = RangeOverBox(tile, depth, range); });
+  return range;
+}
+
+DepthRange RangeOverReceivers(const CoveredSurfaces& covered, const DepthOnScreen& depth) {
+  DepthRange range = kNoDepth;
+  ForEachTile(covered.tiles.grids[0], covered.stop, [&](const DepthTile& tile) {
+    const DepthRange with_box = RangeOverBox(tile, depth, range);
+    if (with_box.near == range.near && with_box.far == range.far) return;
+    covered.ForEach(tile, [&](const Eigen::Vector4d& receiver) {
+      range = Extended(range, depth.At(receiver));
+    });
+  });
   return range;
 }
 
@@ -253,46 +144,48 @@ absl::StatusOr<RayCover> CoverReceivers(const Receivers& receivers,
   const CoveredSurfaces covered = {receivers, covers_all ? receivers.tiles : shadowed, stop};
   const DepthTiles& tiles = covered.tiles;
   const Matrix34d ray_from_screen = RayFromWorld(light) * receivers.world_from_screen;
-  const Eigen::RowVector4d scale_from_screen = receivers.world_from_screen.row(3);
-  const TileGrid* boxes = &tiles.grids[0];
   RayCover cover;
   cover.nothing_shadowed = which == Cover::kShadowed && covers_all;
   Eigen::Matrix3d frame_from_ray = Eigen::Matrix3d::Identity();
-  Eigen::RowVector4d depth_from_screen;
-  TileGrid pixels;
+  DepthOnScreen depth;
+  depth.scale_from_screen = receivers.world_from_screen.row(3);
+  bool one_by_one = false;
   if (light.kind == Light::Kind::kPoint) {
     // Few, coarse boxes will do unless they reach around the light where finer ones do not.
     std::optional<Eigen::Vector3d> axis;
     for (size_t level = std::min<size_t>(1, tiles.grids.size() - 1) + 1; level-- > 0;) {
-      axis = AxisOfBoxes(tiles.grids[level], ray_from_screen);
+      axis = AxisOfBoxes(tiles.grids[level], ray_from_screen, stop);
       if (axis.has_value()) break;
     }
-    if (!axis.has_value()) {
+    if (axis.has_value()) {
+      cover.mean_ray = MeanRay(tiles.grids[0], ray_from_screen, stop);
+    } else {
       // Look at every receiver, unless a few of them surround the light already.
       ScratchVector<Eigen::Vector3d> some_rays;
       for (const Eigen::Vector4d& receiver : OneReceiverPerTile(covered, 0)) {
         some_rays.push_back(ray_from_screen * receiver);
       }
-      if (!FeasibleAxis(some_rays).has_value()) {
-        absl::Status status = CheckStop(stop, light);
-        return status.ok() ? SurroundedError(light) : status;
+      if (FeasibleAxis(some_rays, stop).has_value()) {
+        one_by_one = true;
+        const UnitRaySum sum = SumOfUnitRays(covered, ray_from_screen);
+        axis = FeasibleAxis(sum, [&](const Eigen::Vector3d& along) {
+          return LowestOfUnitRays(covered, ray_from_screen, along);
+        });
+        cover.mean_ray = sum.sum.normalized();
       }
-      pixels = PixelGrid(covered);
-      if (absl::Status status = CheckStop(stop, light); !status.ok()) return status;
-      boxes = &pixels;
-      axis = AxisOfBoxes(pixels, ray_from_screen);
     }
+    if (absl::Status status = CheckStop(stop, light); !status.ok()) return status;
     if (!axis.has_value()) return SurroundedError(light);
     frame_from_ray = FrameAlong(*axis);
-    cover.mean_ray = MeanRay(*boxes, ray_from_screen);
-    depth_from_screen = frame_from_ray.row(2) * ray_from_screen;
+    depth.depth_from_screen = frame_from_ray.row(2) * ray_from_screen;
   } else {
-    depth_from_screen =
+    depth.depth_from_screen =
         light.direction.stableNormalized().transpose() * receivers.world_from_screen.topRows<3>();
   }
-  cover.depth = RangeOverBoxes(*boxes, depth_from_screen, scale_from_screen);
+  cover.depth =
+      one_by_one ? RangeOverReceivers(covered, depth) : RangeOverBoxes(tiles.grids[0], depth, stop);
 
-  cover.hull = HullBuilder(covered, frame_from_ray * ray_from_screen).ExactHull();
+  cover.hull = ExactHull(covered, frame_from_ray * ray_from_screen);
   if (absl::Status status = CheckStop(stop, light); !status.ok()) return status;
   const std::optional<Eigen::Matrix3d> normalized = NormalizeRays(frame_from_ray, &cover.hull);
   if (!normalized.has_value()) {
@@ -303,9 +196,10 @@ absl::StatusOr<RayCover> CoverReceivers(const Receivers& receivers,
   cover.normalized_from_ray = *normalized;
   if (!covers_all) {
     // What is lit may land in the map too, behind all that is shadowed.
-    const TileGrid close = BoxesAlong(receivers.tiles.grids[0], *normalized * ray_from_screen);
-    cover.depth.far =
-        std::max(cover.depth.far, RangeOverBoxes(close, depth_from_screen, scale_from_screen).far);
+    const TileGrid close =
+        BoxesAlong(receivers.tiles.grids[0], *normalized * ray_from_screen, stop);
+    cover.depth.far = std::max(cover.depth.far, RangeOverBoxes(close, depth, stop).far);
+    if (absl::Status status = CheckStop(stop, light); !status.ok()) return status;
   }
   return cover;
 }

@@ -323,7 +323,10 @@ TrackedMatrices Tracker::Update(const Readback& readback,
   states_.resize(lights.size());
   if (stop.stop_requested()) {
     states_.swap(states_before_);
-    for (size_t i = 0; i < lights.size(); ++i) results[i] = CheckStop(stop, lights[i]);
+    for (size_t i = 0; i < lights.size(); ++i) {
+      // What cannot be used is said whether or not there was time to use it.
+      if (!absl::IsInvalidArgument(results[i].status())) results[i] = CheckStop(stop, lights[i]);
+    }
   }
   return results;
 }

@@ -105,8 +105,8 @@ class Tracker {
   // Element i belongs to lights[i] and has its own status, as FitLights(). Where nothing can be
   // fitted (no shadow edge in view, say) but the matrix of the frame before is valid still, that is
   // the result.
-  // CancelledError for every light, and the tracker as it was before the frame, once
-  // options().fit.stop says so.
+  // CancelledError for every light whose inputs are right, and the tracker as it was before the
+  // frame, once options().fit.stop says so.
   TrackedMatrices Update(const Readback& readback, absl::Span<const Light> lights, MapSize map);
 
   // To stop and go on in another process.

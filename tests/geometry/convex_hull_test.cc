@@ -6,6 +6,8 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
 #include "tests/testing/matchers.h"
 #include "tests/testing/random_cases.h"
@@ -145,6 +147,41 @@ TEST(Centroid, EqualsSlicedIntegral) {
     EXPECT_THAT(Centroid(polygon), MatrixNear(Eigen::Vector2d(sum / area), 1e-6));
     EXPECT_NEAR(Area(polygon), area * (y_max - y_min) / kSlices, 1e-6);
   }
+}
+
+Polygon BuiltHull(const std::vector<Eigen::Vector2d>& points) {
+  ConvexHullBuilder builder;
+  for (const Eigen::Vector2d& point : points) builder.Add(point);
+  return builder.Hull();
+}
+
+TEST(ConvexHullBuilder, BuildsTheHullOfAllPointsAtOnce) {
+  Random random(42);
+  for (const int count : {0, 1, 2, 3, 10, 1000, 5000, 50000}) {
+    // Repeats and collinear runs, where arithmetic is exact; a cloud; a ray of points outwards.
+    std::vector<Eigen::Vector2d> grid, cloud, spiral;
+    for (int i = 0; i < count; ++i) {
+      grid.emplace_back(random.Int(-30, 30), random.Int(-20, 20));
+      cloud.push_back(random.InCube(1.0).head<2>());
+      const double angle = 0.7 * i, radius = 1.0 + 0.001 * i;
+      spiral.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
+    }
+    for (const auto& points : {grid, cloud, spiral}) {
+      EXPECT_EQ(BuiltHull(points), ConvexHull(points)) << count;
+    }
+  }
+}
+
+// More vertices than there are places for.
+TEST(ConvexHullBuilder, KeepsEveryPointOfACircle) {
+  std::vector<Eigen::Vector2d> points;
+  for (int i = 0; i < 30000; ++i) {
+    const double angle = 2.0 * M_PI * (i * 7919 % 30000) / 30000.0;
+    points.emplace_back(std::cos(angle), std::sin(angle));
+  }
+  const Polygon hull = BuiltHull(points);
+  EXPECT_EQ(hull.size(), points.size());
+  EXPECT_EQ(hull, ConvexHull(points));
 }
 
 }  // namespace

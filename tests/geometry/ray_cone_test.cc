@@ -140,6 +140,37 @@ TEST(FeasibleAxis, DegenerateInputs) {
   EXPECT_FALSE(FeasibleAxis(bad).has_value());
 }
 
+TEST(FeasibleAxis, IsTheSameOfRaysThatAreNotKept) {
+  Random random(87);
+  int num_feasible = 0;
+  for (int i = 0; i < 100; ++i) {
+    std::vector<Eigen::Vector3d> rays =
+        RaysInCone(random, random.Uniform(0.1, 2.5), random.Int(1, 40));
+    UnitRaySum sum;
+    for (Eigen::Vector3d& ray : rays) sum.Add(ray = ray.normalized().normalized());
+    const std::optional<Eigen::Vector3d> expected = FeasibleAxis(rays);
+    const std::optional<Eigen::Vector3d> axis =
+        FeasibleAxis(sum, [&rays](const Eigen::Vector3d& along) {
+          return *std::min_element(rays.begin(), rays.end(), [&along](auto& a, auto& b) {
+            return along.dot(a) < along.dot(b);
+          });
+        });
+    ASSERT_EQ(axis.has_value(), expected.has_value()) << i;
+    if (!axis.has_value()) continue;
+    EXPECT_THAT(*axis, MatrixNear(*expected, 1e-9)) << i;
+    ++num_feasible;
+  }
+  EXPECT_GT(num_feasible, 20);
+  EXPECT_LT(num_feasible, 90);
+}
+
+TEST(FeasibleAxis, IsNoneOnceItIsToStop) {
+  std::stop_source source;
+  source.request_stop();
+  const std::vector<Eigen::Vector3d> one = {{0.0, 0.0, 1.0}};
+  EXPECT_FALSE(FeasibleAxis(one, source.get_token()).has_value());
+}
+
 TEST(NormalizeRays, FillsTheSquareOfSideTwoAroundTheHullsCentroid) {
   Random random(84);
   for (int i = 0; i < 200; ++i) {

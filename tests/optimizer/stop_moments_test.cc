@@ -17,6 +17,7 @@
 #include "optimizer/map_shapes.h"
 #include "optimizer/tolerance.h"
 #include "optimizer/tracker.h"
+#include "tests/optimizer/hanging_lamp.h"
 #include "tests/testing/matchers.h"
 #include "tests/testing/random_cases.h"
 #include "tests/testing/test_scene.h"
@@ -166,6 +167,17 @@ TEST(StopMoments, SummariesAndFiguresAreCancelledOrTheSameWheneverItIsAskedFor) 
   expect([&] { return TextOfResult(Fit(summary, light, kMap, options)); });
   expect(
       [&] { return TextOfResult(EvaluateMatrix(readback, light, map_from_world, kMap, options)); });
+}
+
+TEST(StopMoments, CoversOfCloseLampsAreCancelledOrTheSameWheneverItIsAskedFor) {
+  Random random(36);
+  const testing::HangingLamp lamp(640, 360);
+  FitOptions options;
+  options.search = Search::kFocused;
+  ExpectCancelledOrTheSame(20, &random, [&](const std::stop_token& stop) {
+    options.stop = stop;
+    return TextOfResult(FitLight(lamp.readback.View(), lamp.light, kMap, options));
+  });
 }
 
 TEST(StopMoments, TolerancesAreCancelledOrTheSameWheneverItIsAskedFor) {

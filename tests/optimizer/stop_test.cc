@@ -18,6 +18,7 @@
 #include "optimizer/prepared_light.h"
 #include "optimizer/refine.h"
 #include "optimizer/tolerance.h"
+#include "optimizer/tracker.h"
 #include "tests/testing/fit_station.h"
 #include "tests/testing/matchers.h"
 #include "tests/testing/test_scene.h"
@@ -118,8 +119,19 @@ TEST(Stop, WrongInputsAreStillCalledWrong) {
   const TestScene scene(/*seed=*/1, /*num_lights=*/1);
   FitOptions options = StoppedOptions();
   options.min_w = -1.0;
-  EXPECT_THAT(FitLight(scene.View(), scene.lights[0], kMap, options),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("min_w")));
+  const auto is_wrong = StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("min_w"));
+  EXPECT_THAT(FitLight(scene.View(), scene.lights[0], kMap, options), is_wrong);
+  TrackerOptions tracker_options;
+  tracker_options.fit = options;
+  Tracker tracker(tracker_options);
+  EXPECT_THAT(tracker.Update(scene.View(), scene.lights, kMap).front(), is_wrong);
+  tracker_options.fit = StoppedOptions();
+  tracker.set_options(tracker_options);
+  EXPECT_THAT(tracker.Update(scene.View(), scene.lights, {0, 0}).front(),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("map = 0x0")));
+  EXPECT_THAT(tracker.Update(scene.View(), scene.lights, kMap).front(),
+              StatusIs(kCancelled, HasSubstr("options.stop")));
+  EXPECT_TRUE(tracker.state().empty());
 }
 
 TEST(Stop, NoAxisIsEvaluatedOnceItIsAskedFor) {
