@@ -9,6 +9,7 @@
 #include "absl/strings/str_format.h"
 #include "calls/request_lights.h"
 #include "io/camera_file.h"
+#include "optimizer/readback_kernels.h"
 
 namespace lightfit {
 namespace {
@@ -265,6 +266,25 @@ absl::Status PixelBuffer::CheckComplete() const {
   return status;
 }
 
+absl::Status CheckBoundary(const Readback& readback, const CallLimits& limits) {
+  const size_t width = readback.width();
+  constexpr uint32_t kAllLights = ~uint32_t{0};
+  std::vector<int32_t> columns(width);
+  int64_t count = 0;
+  for (int y = 1; y + 1 < readback.height(); ++y) {
+    const uint32_t* const row = readback.shadow_bits.data() + width * y;
+    count +=
+        static_cast<int64_t>(internal::ScanBoundary(row, width, width, kAllLights, columns.data()));
+  }
+  if (count <= limits.max_boundary_pixels) return absl::OkStatus();
+  return absl::ResourceExhaustedError(absl::StrFormat(
+      "readback: %d pixels at the borders of shadows, and this server takes at most "
+      "%d: is a shadow noise? Else send a smaller read-back, or fewer lights at a "
+      "time",
+      count,
+      limits.max_boundary_pixels));
+}
+
 absl::StatusOr<ReadbackView> ReadbackView::Of(const v1::Readback& proto,
                                               int num_lights,
                                               const CallLimits& limits) {
@@ -282,12 +302,13 @@ absl::StatusOr<ReadbackView> ReadbackView::Of(const v1::Readback& proto,
                     WordsOf<float>(proto.depth()),
                     header->depth_kind,
                     WordsOf<uint32_t>(proto.shadow_bits())};
-    return result;
+  } else {
+    absl::Status status = result.buffer_.Append(proto);
+    if (status.ok()) status = result.buffer_.CheckComplete();
+    if (!status.ok()) return status;
+    result.view_ = result.buffer_.View();
   }
-  absl::Status status = result.buffer_.Append(proto);
-  if (status.ok()) status = result.buffer_.CheckComplete();
-  if (!status.ok()) return status;
-  result.view_ = result.buffer_.View();
+  if (absl::Status status = CheckBoundary(result.view_, limits); !status.ok()) return status;
   return result;
 }
 

@@ -72,6 +72,9 @@ class PixelBuffer {
   std::vector<int64_t> num_plane_bytes_;  // of each light
 };
 
+// ResourceExhausted when shadows have more border than limits.max_boundary_pixels, as noise has.
+absl::Status CheckBoundary(const Readback& readback, const CallLimits& limits);
+
 // A read-back that came whole: refers to the message's own bytes where they can be used as they
 // are, and to a buffer of its own otherwise. The message must outlive it.
 class ReadbackView {

@@ -83,7 +83,10 @@ absl::Status FitStreamCall::Submit() {
 }
 
 void FitStreamCall::Compute() {
-  absl::StatusOr<v1::FitResult> result = AnswerFit(request_, pixels_->View(), call_.context());
+  const CallContext context = call_.context();
+  const Readback readback = pixels_->View();
+  const absl::Status fits = CheckBoundary(readback, context.limits);
+  absl::StatusOr<v1::FitResult> result = fits.ok() ? AnswerFit(request_, readback, context) : fits;
   if (result.ok()) {
     call_.NoteLights(result->lights());
     *result_ = *std::move(result);

@@ -125,6 +125,9 @@ absl::Status TrackCall::TakePixels(const v1::PixelChunk& chunk) {
 }
 
 void TrackCall::Answer() {
+  if (frame_status_.ok()) {
+    frame_status_ = CheckBoundary(pixels_->View(), call_.parts().limits.calls);
+  }
   const absl::StatusOr<Readback> view =
       frame_status_.ok() ? absl::StatusOr<Readback>(pixels_->View()) : frame_status_;
   result_ = session_->Update(frame_, view, call_.context().stop);

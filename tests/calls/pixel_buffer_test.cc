@@ -196,6 +196,19 @@ TEST(PixelBuffer, RefusesWhatDoesNotBelong) {
               HasSubstr("readback.depth: 0 bytes, want 4800"));
 }
 
+TEST(ReadbackView, RefusesNoise) {
+  testing::PlaneReadback floor = testing::FloorReadback();
+  floor.Cast(0, [](int x, int y) { return (x + y) % 2 == 0; });
+  const v1::Readback proto = testing::ReadbackMessage(floor.View());
+  CallLimits limits;
+  limits.max_boundary_pixels = 38 * 28;  // all but the outermost rows and columns
+  EXPECT_THAT(ReadbackView::Of(proto, kNumLights, limits), testing::IsOk());
+  --limits.max_boundary_pixels;
+  const absl::Status status = ReadbackView::Of(proto, kNumLights, limits).status();
+  EXPECT_EQ(status.code(), absl::StatusCode::kResourceExhausted);
+  EXPECT_THAT(std::string(status.message()), HasSubstr("1064 pixels at the borders of shadows"));
+}
+
 TEST(ReadbackHeader, SaysWhatItTakesBeforeAnythingIsTaken) {
   const testing::PlaneReadback floor = Floor();
   v1::Readback proto = testing::ReadbackMessage(floor.View());
