@@ -172,7 +172,6 @@ absl::StatusOr<v1::Allocation> Answer(const v1::AllocateRequest& request,
   if (task->summaries.has_value()) {
     SayMissingFrames(task->summaries->lights, allocation.mutable_lights());
   }
-  MakeMessagesUtf8(allocation.mutable_lights());
   if (absl::Status status = CheckFinite(allocation, "allocation"); !status.ok()) return status;
   return allocation;
 }

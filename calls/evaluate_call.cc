@@ -19,6 +19,7 @@
 #include "io/proto_json.h"
 #include "io/result_json.h"
 #include "io/text_file.h"
+#include "io/utf8_text.h"
 #include "optimizer/evaluate.h"
 
 namespace lightfit {
@@ -77,7 +78,10 @@ absl::StatusOr<v1::Evaluation> Evaluate(const v1::CandidateMatrix& candidate,
   *evaluation.mutable_samples() = SampleCountsToProto(figures->samples);
   evaluation.set_num_behind(figures->num_behind);
   evaluation.set_wrong_share(figures->wrong_share);
-  if (absl::Status status = CheckFinite(evaluation, "evaluation"); !status.ok()) return status;
+  if (absl::Status status = CheckFinite(evaluation, "evaluation"); !status.ok()) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "its figures are beyond numbers (", status.message(), "): is the matrix of this scene?"));
+  }
   return evaluation;
 }
 

@@ -1,6 +1,5 @@
 #include "calls/finished_result.h"
 
-#include "calls/message_text.h"
 #include "io/proto_json.h"
 
 namespace lightfit {
@@ -11,7 +10,6 @@ absl::StatusOr<v1::FitResult> FinishedResult(const FitReport& report,
   for (size_t i = 0; i < lights.size(); ++i) {
     if (!lights[i].status.ok()) result.mutable_lights(static_cast<int>(i))->clear_light();
   }
-  MakeMessagesUtf8(result.mutable_lights());
   if (absl::Status status = CheckFinite(result, "result"); !status.ok()) return status;
   return result;
 }

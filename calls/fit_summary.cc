@@ -1,6 +1,7 @@
 #include "calls/fit_summary.h"
 
 #include "absl/strings/str_format.h"
+#include "io/utf8_text.h"
 #include "optimizer/fit.h"
 
 namespace lightfit {
@@ -38,7 +39,7 @@ std::string MissingFramesText(const LightSummary& light) {
                          light.name(),
                          light.num_frames_without,
                          light.num_frames(),
-                         light.failure.message());
+                         Utf8Text(light.failure.message()));
 }
 
 void ClearReadbackFigures(v1::ReadbackInfo* readback,

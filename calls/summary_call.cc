@@ -3,7 +3,6 @@
 #include <string>
 
 #include "calls/fit_summary.h"
-#include "calls/message_text.h"
 #include "calls/request_fields.h"
 #include "calls/summary_request.h"
 #include "io/proto_json.h"
@@ -37,7 +36,6 @@ absl::StatusOr<v1::FitResult> AnswerFitSummary(const v1::FitSummaryRequest& requ
   v1::FitResult result = FitResultToProto(report);
   ClearReadbackFigures(result.mutable_readback(), result.mutable_lights());
   SayMissingFrames(sum->lights, result.mutable_lights());
-  MakeMessagesUtf8(result.mutable_lights());
   if (absl::Status status = CheckFinite(result, "result"); !status.ok()) return status;
   return result;
 }

@@ -73,6 +73,17 @@ absl::Status ValidateCamera(const Camera& camera, DepthKind kind) {
         "camera.camera_from_world is singular, not finite or not affine: want a rotation (or a "
         "rotation and a mirror) with a translation, last row (0, 0, 0, 1)");
   }
+  // Fourth powers of them are summed.
+  constexpr double kMaxValue = 1e18;
+  const double largest = std::max(camera.camera_from_world.cwiseAbs().maxCoeff(),
+                                  camera.screen_from_camera.cwiseAbs().maxCoeff());
+  if (largest > kMaxValue) {
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "camera: has a value of %g, want at most %g: are pose and intrinsics in world units and "
+        "pixels?",
+        largest,
+        kMaxValue));
+  }
   if (!IsInvertible(camera.screen_from_camera) ||
       camera.screen_from_camera.row(2) != Eigen::RowVector3d::UnitZ()) {
     return absl::InvalidArgumentError(

@@ -52,7 +52,7 @@ ScratchVector<Breakpoint> PolarOfDifference(const Polygon& points) {
   double furthest = 0.0;
   for (int i = 2; i < n; ++i) furthest = std::max(furthest, distance(i));
   int low = 0, high = 2;
-  while (distance(high) < furthest * (1.0 - kParallelTolerance)) ++high;
+  while (high + 1 < n && distance(high) < furthest * (1.0 - kParallelTolerance)) ++high;
 
   ScratchVector<Breakpoint> polar;
   polar.reserve(n);
@@ -92,6 +92,11 @@ class StripSearch {
       : polar_(std::move(polar)), size_(static_cast<int>(polar_.size())) {}
 
   int size() const { return size_; }
+  bool is_finite() const {
+    return std::all_of(polar_.begin(), polar_.end(), [](const Breakpoint& breakpoint) {
+      return std::isfinite(breakpoint.row.squaredNorm());
+    });
+  }
   Row AtBreakpoint(int index) const { return {polar_[index].row, index, true}; }
 
   // Energy in terms of two rows a, b: with s = a x b,
@@ -338,6 +343,11 @@ EnclosingParallelogram MinEnergyParallelogram(const Polygon& polygon,
   Polygon points(polygon.size());
   for (size_t i = 0; i < polygon.size(); ++i) points[i] = whiten * polygon[i];
   const StripSearch search(PolarOfDifference(points));
+  EnclosingParallelogram result;
+  if (!search.is_finite()) {
+    result.energy = std::numeric_limits<double>::infinity();
+    return result;
+  }
 
   const double iw2 = 1.0 / (width * width);
   const double ih2 = 1.0 / (height * height);
@@ -374,7 +384,6 @@ EnclosingParallelogram MinEnergyParallelogram(const Polygon& polygon,
   const Row& best_u = best.searched;
   const Row& best_v = best.fixed;
 
-  EnclosingParallelogram result;
   result.contacts = {search.Contacts(best_u), search.Contacts(best_v)};
   // Rows a, b with a.(y - low) in [0, 1] are the inverse of the matrix of edges.
   Eigen::Matrix2d rows;

@@ -17,8 +17,10 @@ Slabs::Slabs(const Polygon& polygon, int across) : across_(across) {
     begin_ = std::min(begin_, vertex(across));
     end = std::max(end, vertex(across));
   }
-  if (!(end > begin_)) return;
-  slabs_per_unit_ = kNumSlabs / (end - begin_);
+  const double slabs_per_unit = kNumSlabs / (end - begin_);
+  // No width, or so little or much that rounding makes nonsense of it: no point is recognised.
+  if (!std::isfinite(slabs_per_unit) || !(slabs_per_unit > 0.0)) return;
+  slabs_per_unit_ = slabs_per_unit;
 
   // Where the borders between slabs cross the polygon's two chains. As the chains are convex and
   // concave, the borders' values bound the slabs between them.
@@ -32,7 +34,7 @@ Slabs::Slabs(const Polygon& polygon, int across) : across_(across) {
     const bool is_lower = ((*to)(across) > (*from)(across)) == (across == 0);
     if ((*to)(across) < (*from)(across)) std::swap(from, to);
     const double run = (*to)(across) - (*from)(across);
-    if (!(run > 0.0)) continue;
+    if (!(run > 0.0) || !std::isfinite(run)) continue;
     const double slope = ((*to)(1 - across) - (*from)(1 - across)) / run;
     const int first = static_cast<int>(std::ceil(((*from)(across)-begin_) * slabs_per_unit_));
     const int last = static_cast<int>(((*to)(across)-begin_) * slabs_per_unit_);

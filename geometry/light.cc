@@ -49,11 +49,13 @@ absl::Status ValidateLight(const Light& light) {
         kMaxLights - 1));
   }
   if (light.kind == Light::Kind::kPoint) {
-    if (!light.position.allFinite()) {
-      return absl::InvalidArgumentError(
-          absl::StrFormat("light \"%s\": position = %s, want finite world coordinates",
-                          light.name,
-                          VectorText(light.position)));
+    constexpr double kMaxCoordinate = 1e18;  // fourth powers of it are summed
+    if (!(light.position.array().abs() <= kMaxCoordinate).all()) {
+      return absl::InvalidArgumentError(absl::StrFormat(
+          "light \"%s\": position = %s, want finite world coordinates of at most %g",
+          light.name,
+          VectorText(light.position),
+          kMaxCoordinate));
     }
     return absl::OkStatus();
   }

@@ -7,6 +7,9 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "io/exr_header.h"
+#include "io/text_file.h"
+#include "io/utf8_text.h"
 
 namespace lightfit::internal {
 
@@ -74,9 +77,10 @@ absl::StatusOr<ExrInput> ExrInput::Open(const std::string& path, int64_t max_pix
     if (!exr.input_->valid_file(path)) {
       return absl::InvalidArgumentError(absl::StrCat(path, ": is not an OpenEXR file"));
     }
+    if (absl::Status status = InFile(path, CheckExrHeader(path)); !status.ok()) return status;
     if (!exr.input_->open(path, spec)) {
       return absl::InvalidArgumentError(
-          absl::StrCat(path, ": cannot be read as OpenEXR: ", exr.input_->geterror()));
+          absl::StrCat(path, ": cannot be read as OpenEXR: ", Utf8Text(exr.input_->geterror())));
     }
     for (int part = 0; part < kMaxParts && exr.input_->seek_subimage(part, 0); ++part) {
       exr.parts_.push_back(exr.input_->spec());
@@ -92,8 +96,12 @@ absl::StatusOr<ExrInput> ExrInput::Open(const std::string& path, int64_t max_pix
     return exr;
   } catch (const std::exception& e) {
     return absl::InvalidArgumentError(
-        absl::StrCat(path, ": cannot be read as OpenEXR: ", e.what()));
+        absl::StrCat(path, ": cannot be read as OpenEXR: ", Utf8Text(e.what())));
   }
+}
+
+std::string ExrInput::quoted_name(ChannelId id) const {
+  return absl::StrCat("\"", Utf8Text(name(id)), "\"");
 }
 
 bool ExrInput::is_uint(ChannelId id) const {
@@ -142,8 +150,10 @@ absl::StatusOr<std::vector<T>> ExrInput::Read(ChannelId id, OIIO::TypeDesc type,
   try {
     std::vector<T> data(static_cast<size_t>(spec.width) * spec.height);
     if (!input_->read_image(id.part, 0, id.channel, id.channel + 1, type, data.data())) {
-      return absl::DataLossError(absl::StrFormat(
-          "%s: channel \"%s\" cannot be read: %s", path_, name(id), input_->geterror()));
+      return absl::DataLossError(absl::StrFormat("%s: channel %s cannot be read: %s",
+                                                 path_,
+                                                 quoted_name(id),
+                                                 Utf8Text(input_->geterror())));
     }
     if (spec.x == spec.full_x && spec.y == spec.full_y && spec.width == spec.full_width &&
         spec.height == spec.full_height) {
@@ -165,15 +175,15 @@ absl::StatusOr<std::vector<T>> ExrInput::Read(ChannelId id, OIIO::TypeDesc type,
     }
     return display;
   } catch (const std::exception& e) {
-    return absl::DataLossError(
-        absl::StrFormat("%s: channel \"%s\" cannot be read: %s", path_, name(id), e.what()));
+    return absl::DataLossError(absl::StrFormat(
+        "%s: channel %s cannot be read: %s", path_, quoted_name(id), Utf8Text(e.what())));
   }
 }
 
 absl::StatusOr<std::vector<float>> ExrInput::ReadFloat(ChannelId id, float outside) {
   if (is_uint(id)) {
     return absl::InvalidArgumentError(
-        absl::StrFormat("%s: channel \"%s\" is UINT, want half or float", path_, name(id)));
+        absl::StrFormat("%s: channel %s is UINT, want half or float", path_, quoted_name(id)));
   }
   return Read<float>(id, OIIO::TypeDesc::FLOAT, outside);
 }
@@ -181,9 +191,9 @@ absl::StatusOr<std::vector<float>> ExrInput::ReadFloat(ChannelId id, float outsi
 absl::StatusOr<std::vector<uint32_t>> ExrInput::ReadUint(ChannelId id) {
   if (!is_uint(id)) {
     return absl::InvalidArgumentError(absl::StrFormat(
-        "%s: channel \"%s\" is half or float, want UINT: a float holds no more than 24 bits",
+        "%s: channel %s is half or float, want UINT: a float holds no more than 24 bits",
         path_,
-        name(id)));
+        quoted_name(id)));
   }
   return Read<uint32_t>(id, OIIO::TypeDesc::UINT32, 0);
 }
@@ -192,7 +202,7 @@ std::string QuotedList(const std::vector<std::string>& names) {
   if (names.empty()) return "none";
   std::string list;
   for (size_t i = 0; i < std::min(names.size(), kMaxListedNames); ++i) {
-    absl::StrAppend(&list, i == 0 ? "" : ", ", "\"", names[i], "\"");
+    absl::StrAppend(&list, i == 0 ? "" : ", ", "\"", Utf8Text(names[i]), "\"");
   }
   if (names.size() > kMaxListedNames) {
     absl::StrAppend(&list, " and ", names.size() - kMaxListedNames, " more");

@@ -42,6 +42,7 @@ class ExrInput {
   int height(int part) const { return parts_[part].full_height; }
 
   const std::string& name(ChannelId id) const { return parts_[id.part].channelnames[id.channel]; }
+  std::string quoted_name(ChannelId id) const;  // for messages
   bool is_uint(ChannelId id) const;
 
   // The channel of that name in the given part, else in the first part that has it.
@@ -67,7 +68,7 @@ class ExrInput {
   std::vector<OIIO::ImageSpec> parts_;
 };
 
-// "\"Z\", \"shadow.key\", \"shadow.sun\"", cut short after a few dozen.
+// UTF-8, as "\"Z\", \"shadow.key\", \"shadow.sun\"", cut short after a few dozen.
 std::string QuotedList(const std::vector<std::string>& names);
 
 }  // namespace lightfit::internal

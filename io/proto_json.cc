@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "io/utf8_text.h"
 
 namespace lightfit {
 
@@ -20,7 +21,7 @@ absl::Status JsonToProto(absl::string_view json, google::protobuf::Message& mess
       absl::StrCat("is not the JSON of a ",
                    std::string(message.GetDescriptor()->full_name()),
                    ": ",
-                   std::string(status.message().data(), status.message().size())));
+                   Utf8Text({status.message().data(), status.message().size()})));
 }
 
 absl::StatusOr<std::string> ProtoToJson(const google::protobuf::Message& message) {

@@ -116,10 +116,10 @@ absl::Status CheckSameSize(const ExrInput& exr, ChannelId depth, ChannelId other
     return absl::OkStatus();
   }
   return absl::InvalidArgumentError(
-      absl::StrFormat("%s: channel \"%s\" is in a part of %dx%d pixels, the depth in one of %dx%d: "
+      absl::StrFormat("%s: channel %s is in a part of %dx%d pixels, the depth in one of %dx%d: "
                       "want one size",
                       exr.path(),
-                      exr.name(other),
+                      exr.quoted_name(other),
                       exr.width(other.part),
                       exr.height(other.part),
                       exr.width(depth.part),

@@ -7,6 +7,7 @@
 #include "io/options_proto.h"
 #include "io/proto_json.h"
 #include "io/text_file.h"
+#include "io/utf8_text.h"
 
 namespace lightfit {
 
@@ -60,7 +61,7 @@ v1::LightResult LightResultToProto(const LightFit& fit, const FitReport& report)
   *proto.mutable_light() = LightToProto(fit.light);
   const absl::Status& status = fit.matrix.status();
   proto.mutable_status()->set_code(static_cast<int>(status.code()));
-  proto.mutable_status()->set_message(std::string(status.message()));
+  proto.mutable_status()->set_message(Utf8Text(status.message()));
   if (fit.time_ms) proto.set_time_ms(*fit.time_ms);
   const MapSize map = fit.matrix.ok() ? fit.matrix->map : report.map;
   proto.mutable_map()->set_width(map.width);
@@ -122,7 +123,7 @@ v1::FitResult FitResultToProto(const FitReport& report) {
   for (const LightFit& fit : report.lights) {
     *proto.add_lights() = LightResultToProto(fit, report);
   }
-  proto.mutable_readback()->set_source(report.source);
+  proto.mutable_readback()->set_source(Utf8Text(report.source));
   *proto.mutable_readback()->mutable_camera() = CameraToProto(report.camera, report.depth_kind);
   *proto.mutable_options() = FitOptionsToProto(report.options);
   return proto;

@@ -35,6 +35,7 @@ constexpr int kMaxDescents = 4;
 // section each way.
 constexpr double kFirstSide = 4e-3, kLastSide = 4e-8;
 constexpr int kGoldenSteps = 24;
+constexpr int kMaxSquares = 64;  // a handful do, unless the energy is that of damaged sums
 
 struct Point {
   Eigen::Vector2d ab;
@@ -155,7 +156,8 @@ AffineFit SearchSquaresAround(const ReducedEnergyCost& cost, AffineFit best) {
     if (energy < best.energy) best = *std::move(fit);
     return energy;
   };
-  for (double side = kFirstSide; side >= kLastSide;) {
+  double side = kFirstSide;
+  for (int square = 0; square < kMaxSquares && side >= kLastSide; ++square) {
     const Eigen::Vector2d centre = AxisParameters(best);
     const double before = best.energy;
     GoldenSection(centre.x() - 0.5 * side, centre.x() + 0.5 * side, [&](double a) {

@@ -119,7 +119,7 @@ absl::StatusOr<LightMatrix> LayMatrix(const SearchInputs& inputs,
         ComputeFootprintStatistics(map_from_normalized, *inputs.samples, options.stop);
   } else if (summary.counts.used > 0 && options.metric == Metric::kL2) {
     const double energy = summary.tensor.Energy(map_from_normalized);
-    matrix.footprint.rms = std::sqrt(0.5 * energy / summary.total_weight);
+    matrix.footprint.rms = std::sqrt(std::max(0.0, 0.5 * energy / summary.total_weight));
   }
   return matrix;
 }

@@ -98,8 +98,8 @@ size_t ScanBoundarySimd(
   }
   for (; x + 1 < width; ++x) {
     const uint32_t here = row[x];
-    const uint32_t differs = (here ^ row[x - 1]) | (here ^ row[x + 1]) | (here ^ row[x - stride]) |
-                             (here ^ row[x + stride]);
+    const uint32_t differs = (here ^ row[x - 1]) | (here ^ row[x + 1]) |
+                             (here ^ *(row + x - stride)) | (here ^ row[x + stride]);
     if ((differs & mask) != 0) columns[count++] = static_cast<int32_t>(x);
   }
   return count;

@@ -1,5 +1,6 @@
 #include "optimizer/summary_total.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
@@ -53,6 +54,17 @@ WideMatrix6 Transformed(const WideMatrix6& tensor, const WideMatrix3& new_from_o
   const WideMatrix6 on_rays = SymmetricCongruence(new_from_old);
   const WideMatrix6 on_metric = SymmetricCongruence(contragredient);
   return on_rays * tensor * on_metric.transpose();
+}
+
+// Whether samples may sum to it: no energy of theirs is negative, math.md (7).
+bool IsSumOfSamples(const EnergyTensor& tensor) {
+  constexpr double kRounding = 1e-9;  // share of the largest eigenvalue
+  const Eigen::Matrix<double, 9, 9> form = tensor.AsQuadraticForm();
+  if (!form.allFinite()) return false;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> solver(form,
+                                                                          Eigen::EigenvaluesOnly);
+  const auto& eigenvalues = solver.eigenvalues();  // in ascending order
+  return eigenvalues(0) >= -kRounding * eigenvalues(8);
 }
 
 SampleCounts AddCounts(const SampleCounts& a, const SampleCounts& b) {
@@ -192,6 +204,12 @@ absl::StatusOr<Summary> SummaryOfTotal(const SummaryTotal& total) {
   for (int i = 0; i < 36; ++i) tensor(i / 6, i % 6) = ToWide(total.tensor[i]);
   summary.tensor =
       EnergyTensor(Transformed(tensor, cover->normalized_from_ray.cast<Wide>()).cast<double>());
+  if (!IsSumOfSamples(summary.tensor)) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("light \"%s\": tensor: no samples sum to this, the summary is damaged: "
+                        "summarise its frames again",
+                        total.light.name));
+  }
   summary.cover = *std::move(cover);
   return summary;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/strings/ascii.h"
+#include "absl/strings/escaping.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -43,6 +44,12 @@ struct Header {
   std::vector<Element> elements;
 };
 
+// For messages: the beginning of it, what is not ASCII as "\\xff".
+std::string Quoted(absl::string_view text) {
+  constexpr size_t kMaxBytes = 80;
+  return absl::StrCat("\"", absl::CHexEscape(text.substr(0, kMaxBytes)), "\"");
+}
+
 absl::StatusOr<Type> TypeOf(absl::string_view name) {
   constexpr std::pair<absl::string_view, Type> kTypes[] = {{"char", {Number::kSigned, 1}},
                                                            {"int8", {Number::kSigned, 1}},
@@ -63,13 +70,13 @@ absl::StatusOr<Type> TypeOf(absl::string_view name) {
   for (const auto& [word, type] : kTypes) {
     if (word == name) return type;
   }
-  return absl::InvalidArgumentError(absl::StrCat(
-      "its header has a property of type \"", name.substr(0, 40), "\", which PLY has not"));
+  return absl::InvalidArgumentError(
+      absl::StrCat("its header has a property of type ", Quoted(name), ", which PLY has not"));
 }
 
 absl::Status Damaged(absl::string_view line) {
   return absl::InvalidArgumentError(
-      absl::StrCat("its header has the line \"", line.substr(0, 80), "\"; it is damaged"));
+      absl::StrCat("its header has the line ", Quoted(line), "; it is damaged"));
 }
 
 absl::StatusOr<Property> ParseProperty(const std::vector<absl::string_view>& words,
@@ -122,9 +129,9 @@ absl::StatusOr<Header> TakeHeader(absl::string_view* bytes) {
       if (!absl::SimpleAtoi(words[2], &element.count) || element.count < 0 ||
           element.count > num_bytes) {
         return absl::InvalidArgumentError(
-            absl::StrFormat("its header says \"%s\", which a file of %d bytes cannot hold; it is "
+            absl::StrFormat("its header says %s, which a file of %d bytes cannot hold; it is "
                             "damaged or cut short",
-                            line.substr(0, 80),
+                            Quoted(line),
                             num_bytes));
       }
       header.elements.push_back(std::move(element));
@@ -239,7 +246,7 @@ absl::StatusOr<Scene> ParsePly(absl::string_view bytes) {
       if (!ReadEntry(element, &body, &list, &scene)) {
         return absl::InvalidArgumentError(
             absl::StrFormat("%s %d of %d cannot be read; the file is damaged or cut short",
-                            element.name.substr(0, 40),
+                            absl::CHexEscape(element.name.substr(0, 40)),
                             i + 1,
                             element.count));
       }

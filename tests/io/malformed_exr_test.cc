@@ -174,5 +174,53 @@ TEST(MalformedExr, HugeDimensionsAreRefusedBeforeMemoryIsTaken) {
   EXPECT_LT(PeakMemoryKilobytes() - before, 200 * 1024);
 }
 
+// OpenEXR takes memory for an attribute before it reads it, so the length must be looked at first.
+TEST(MalformedExr, AttributesLongerThanTheFileAreRefusedBeforeMemoryIsTaken) {
+  const testing::TemporaryFolder folder;
+  const int64_t before = PeakMemoryKilobytes();
+  for (const bool multi_part : {false, true}) {
+    const std::string whole = SmallExrBytes(folder, multi_part);
+    const std::string key = std::string("worldToNDC") + '\0' + "m44f" + '\0';
+    for (size_t place = whole.find(key); place != std::string::npos;
+         place = whole.find(key, place + 1)) {
+      for (const int32_t length : {std::numeric_limits<int32_t>::max(), 1 << 30, 1 << 20, -1}) {
+        std::string bytes = whole;
+        // A type that OpenEXR does not know may have any length.
+        bytes.replace(place + key.size() - 2, 1, "x");
+        std::memcpy(&bytes[place + key.size()], &length, sizeof(length));
+        const auto file = ReadReadbackExr(folder.Write("long.exr", bytes), kLights);
+        EXPECT_EQ(file.status().code(), absl::StatusCode::kInvalidArgument);
+        EXPECT_TRUE(HasAll(file.status().message(), {"long.exr", "worldToNDC", "damaged"}));
+      }
+    }
+  }
+  EXPECT_LT(PeakMemoryKilobytes() - before, 200 * 1024);
+}
+
+// OpenImageIO would end the program.
+TEST(MalformedExr, ChannelsOfUnknownKindAreRefused) {
+  const testing::TemporaryFolder folder;
+  const std::string whole = SmallExrBytes(folder, true);
+  for (const std::string key : {"shadow.sun", "shadow.key"}) {
+    std::string bytes = whole;
+    bytes[bytes.find(key) + key.size() + 1] = '\3';
+    const auto file = ReadReadbackExr(folder.Write("kind.exr", bytes), kLights);
+    EXPECT_EQ(file.status().code(), absl::StatusCode::kInvalidArgument);
+    EXPECT_TRUE(HasAll(file.status().message(), {"kind.exr", "channels", "damaged"}));
+  }
+}
+
+// What is not UTF-8 could not be written into a result.
+TEST(MalformedExr, NamesThatAreNotUtf8AreQuotedAsQuestionMarks) {
+  const testing::TemporaryFolder folder;
+  std::string bytes = SmallExrBytes(folder, false);
+  const size_t place = bytes.find("shadow.sun");
+  ASSERT_NE(place, std::string::npos);
+  bytes[place + 7] = '\xff';
+  const auto file = ReadReadbackExr(folder.Write("name.exr", bytes), kLights);
+  ASSERT_TRUE(file.ok()) << file.status();
+  EXPECT_TRUE(HasAll(file->light_status[0].message(), {"\"shadow.?un\""}));
+}
+
 }  // namespace
 }  // namespace lightfit

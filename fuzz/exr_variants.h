@@ -1,0 +1,16 @@
+// fuzz/exr_variants.h
+//
+// An OpenEXR file in the other forms that the format has: a part of its own for shadows, a UINT
+// channel, tiles, and every kind of compression. Apart, as OpenImageIO and protobuf do not go into
+// one source.
+#pragma once
+
+#include <string>
+
+namespace lightfit::fuzz {
+
+// Writes FOLDER/COMPRESSION for each of the forms of the file at `path`, whose first two channels
+// they take. False when one cannot be written; the reason goes to the standard error.
+bool WriteExrVariants(const std::string& path, const std::string& folder);
+
+}  // namespace lightfit::fuzz

@@ -1,0 +1,358 @@
+// Writes the first inputs of every target, for corpora to grow from: one pixel of each 9 x 9 of
+// examples/yard_180, in the forms that targets take.
+//   fuzz_make_seeds REPOSITORY FOLDER      FOLDER/TARGET/NAME, such as fuzz/corpus/fit/yard
+#include <Eigen/LU>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "calls/allocate_call.h"
+#include "calls/fit_call.h"
+#include "calls/track_session.h"
+#include "fuzz/exr_variants.h"
+#include "fuzz/inputs.pb.h"
+#include "io/camera_file.h"
+#include "io/lights_file.h"
+#include "io/options_proto.h"
+#include "io/proto_json.h"
+#include "io/readback_exr.h"
+#include "io/readback_exr_write.h"
+#include "io/shot_proto.h"
+#include "io/summary_file.h"
+#include "io/summary_proto.h"
+#include "io/text_file.h"
+#include "optimizer/fit.h"
+
+namespace lightfit::fuzz {
+namespace {
+
+constexpr int kStep = 9;  // odd, so that the middle of a block is the middle of a pixel
+
+void Write(const std::string& path, absl::string_view bytes) {
+  std::filesystem::create_directories(std::filesystem::path(path).parent_path());
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+struct SmallReadback {
+  std::vector<Light> lights;
+  ReadbackFile file;
+};
+
+SmallReadback SmallYard(const std::string& folder) {
+  SmallReadback yard;
+  yard.lights = ReadLightsFile(folder + "/scene.json").value();
+  const ReadbackFile whole = ReadReadbackExr(folder + "/0001.exr", yard.lights).value();
+  yard.lights.resize(2);
+  ReadbackFile& file = yard.file;
+  file.camera = whole.camera;
+  file.camera.width /= kStep;
+  file.camera.height /= kStep;
+  file.camera.screen_from_camera.topRows<2>() /= kStep;
+  for (int y = 0; y < file.camera.height; ++y) {
+    for (int x = 0; x < file.camera.width; ++x) {
+      const int from = (kStep * y + kStep / 2) * whole.camera.width + kStep * x + kStep / 2;
+      file.depth.push_back(whole.depth[from]);
+      file.shadow_bits.push_back(whole.shadow_bits[from] & 3U);
+    }
+  }
+  return yard;
+}
+
+template <typename Word>
+std::string BytesOf(const std::vector<Word>& words) {
+  return {reinterpret_cast<const char*>(words.data()), sizeof(Word) * words.size()};
+}
+
+template <typename Request>
+Request RequestOf(const SmallReadback& yard) {
+  Request request;
+  v1::Readback& readback = *request.mutable_readback();
+  *readback.mutable_camera() = CameraToProto(yard.file.camera, yard.file.depth_kind);
+  readback.set_depth(BytesOf(yard.file.depth));
+  readback.set_shadow_bits(BytesOf(yard.file.shadow_bits));
+  for (const Light& light : yard.lights) *request.add_lights() = LightToProto(light);
+  return request;
+}
+
+v1::MapSize SmallMap() {
+  v1::MapSize map;
+  map.set_width(256);
+  map.set_height(128);
+  return map;
+}
+
+// The same pixels as halves and planes, and other choices.
+void UseOtherForms(const SmallReadback& yard, v1::Readback* readback) {
+  readback->set_depth_format(v1::DEPTH_FORMAT_FLOAT16);
+  readback->set_shadow_format(v1::SHADOW_FORMAT_PLANES);
+  std::vector<uint16_t> halves;
+  for (const float depth : yard.file.depth) {
+    halves.push_back(Eigen::numext::bit_cast<uint16_t>(Eigen::half(depth)));
+  }
+  readback->set_depth(BytesOf(halves));
+  readback->clear_shadow_bits();
+  for (size_t l = 0; l < yard.lights.size(); ++l) {
+    std::string plane;
+    for (const uint32_t bits : yard.file.shadow_bits) {
+      plane.push_back((bits >> l & 1U) != 0 ? '\xff' : '\0');
+    }
+    readback->add_shadow_planes(plane);
+  }
+}
+
+v1::FitRequest FitSeed(const SmallReadback& yard) {
+  v1::FitRequest request = RequestOf<v1::FitRequest>(yard);
+  *request.mutable_map() = SmallMap();
+  return request;
+}
+
+v1::FitStreamRequest PixelsOf(const v1::Readback& readback, size_t begin, size_t end) {
+  v1::FitStreamRequest part;
+  v1::PixelChunk& pixels = *part.mutable_pixels();
+  pixels.set_depth(readback.depth().substr(begin, end - begin));
+  pixels.set_shadow_bits(readback.shadow_bits().substr(begin, end - begin));
+  return part;
+}
+
+void RemovePixels(v1::Readback* readback) {
+  readback->clear_depth();
+  readback->clear_shadow_bits();
+  readback->clear_shadow_planes();
+}
+
+// An allocation makes dozens of fits.
+void UseQuickSearch(v1::AllocateRequest* request) {
+  request->mutable_options()->set_search(v1::SEARCH_ROTATION_LINE_SEARCH);
+  request->mutable_options()->set_affine(v1::AFFINE_MIN_AREA_RECTANGLE);
+  request->mutable_rules()->set_multiple(256);
+  request->mutable_rules()->set_max_side(1024);
+}
+
+SummarySet SummariesOf(const SmallReadback& yard, const FitOptions& options) {
+  std::vector<LightSummary> lights;
+  for (const Light& light : yard.lights) {
+    lights.push_back(
+        SummaryOfFrame(light, Summarize(yard.file.View(), light, options), "yard.exr", options));
+  }
+  return MakeSummarySet(options, std::move(lights));
+}
+
+class Seeds {
+ public:
+  Seeds(const std::string& repository, const std::string& folder)
+      : yard_(SmallYard(repository + "/examples/yard_180")),
+        scene_(ReadTextFile(repository + "/examples/yard_180/scene.json").value()),
+        folder_(folder) {}
+
+  void WriteCalls() const {
+    v1::FitRequest fit = FitSeed(yard_);
+    Save("fit/yard", fit);
+    v1::FitRequest other = fit;
+    UseOtherForms(yard_, other.mutable_readback());
+    *other.mutable_options() = FitOptionsToProto(FitOptions::AsPublished());
+    other.set_foretell_wrong(true);
+    Save("fit/other_forms", other);
+    WriteStreams(fit);
+
+    v1::EvaluateRequest evaluate = RequestOf<v1::EvaluateRequest>(yard_);
+    const v1::FitResult result = AnswerFit(fit, CallContext()).value();
+    for (const v1::LightResult& light : result.lights()) {
+      if (light.status().code() != 0) continue;
+      v1::CandidateMatrix& candidate = *evaluate.add_matrices();
+      candidate.set_light(light.name());
+      *candidate.mutable_map() = light.map();
+      if (evaluate.matrices_size() == 1) {
+        *candidate.mutable_map_from_world() = light.map_from_world();
+      } else {
+        *candidate.mutable_clip_from_world() = light.clip_from_world();
+        *candidate.mutable_clip() = light.clip();
+      }
+    }
+    Save("evaluate/yard", evaluate);
+
+    v1::AllocateRequest allocate = RequestOf<v1::AllocateRequest>(yard_);
+    allocate.set_budget_texels(1 << 17);
+    UseQuickSearch(&allocate);
+    v1::LightWeight& weight = *allocate.add_weights();
+    weight.set_light(yard_.lights[0].name);
+    weight.set_weight(2.0);
+    Save("allocate/budget", allocate);
+    allocate.clear_weights();
+    allocate.mutable_tolerance()->set_kind(v1::Tolerance::KIND_P99);
+    allocate.mutable_tolerance()->set_limit_px(2.0);
+    Save("allocate/tolerance", allocate);
+  }
+
+  void WriteSummaries() const {
+    FitOptions squares;
+    squares.metric = Metric::kL2;
+    for (const auto& [name, options] :
+         {std::pair{"l1", FitOptions()}, std::pair{"squares", squares}}) {
+      const SummarySet set = SummariesOf(yard_, options);
+      const std::string file = SerializeSummarySet(set, "fuzzer").value();
+      Write(absl::StrCat(folder_, "/summary_file/", name), file);
+      SummarySet sum = set;
+      if (AddToSet(set, &sum).ok()) {
+        Write(absl::StrCat(folder_, "/summary_file/", name, "_twice"),
+              SerializeSummarySet(sum, "fuzzer").value());
+      }
+      v1::FitSummaryRequest fit;
+      *fit.mutable_map() = SmallMap();
+      fit.add_summary_files(file);
+      Save(absl::StrCat("fit_summary/", name, "_file"), fit);
+      fit.clear_summary_files();
+      *fit.add_summaries() = SummarySetToProto(set);
+      *fit.add_summaries() = SummarySetToProto(set);
+      Save(absl::StrCat("fit_summary/", name), fit);
+      v1::AllocateRequest allocate;
+      UseQuickSearch(&allocate);
+      *allocate.add_summaries() = SummarySetToProto(set);
+      allocate.set_budget_texels(1 << 17);
+      Save(absl::StrCat("allocate/budget_", name), allocate);
+      allocate.mutable_tolerance()->set_kind(v1::Tolerance::KIND_RMS);
+      allocate.mutable_tolerance()->set_limit_px(2.0);
+      Save(absl::StrCat("allocate/tolerance_", name), allocate);
+    }
+  }
+
+  void WriteJson() const {
+    v1::LightList lights;
+    for (const Light& light : yard_.lights) *lights.add_lights() = LightToProto(light);
+    SaveJson("lights_json/list", lights);
+    Write(folder_ + "/lights_json/scene", scene_);
+    SaveJson("camera_json/camera", CameraToProto(yard_.file.camera, DepthKind::kCameraZ));
+    Write(folder_ + "/camera_json/scene", scene_);
+
+    const v1::FitRequest fit = FitSeed(yard_);
+    v1::TrackSetup setup;
+    *setup.mutable_map() = fit.map();
+    TrackSession session = TrackSession::Begin(setup).value();
+    v1::TrackFrame frame;
+    *frame.mutable_lights() = fit.lights();
+    const v1::TrackResult tracked = session.Update(frame, yard_.file.View(), {});
+    SaveJson("result_json/track", tracked.result());
+    SaveJson("matrices_json/result", tracked.result());
+    v1::AllocateRequest allocate = RequestOf<v1::AllocateRequest>(yard_);
+    allocate.set_budget_texels(1 << 17);
+    SaveJson("result_json/allocation", AnswerAllocate(allocate, CallContext()).value());
+    for (const char* text :
+         {"{\"map_from_world\": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1],\n"
+          " \"map\": {\"width\": 64, \"height\": 32}}\n",
+          "{\"clip_from_world\": {\"m\": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]},\n"
+          " \"clip\": {\"yUp\": true}}\n",
+          "{\"clipFromWorld\": [[1,0,0,0], [0,1,0,0], [0,0,1,0], [0,0,0,1]],\n"
+          " \"clip\": \"opengl\"}\n"}) {
+      Write(absl::StrCat(folder_, "/matrices_json/single", absl::string_view(text).size()), text);
+    }
+  }
+
+  void WritePly() const {
+    Write(folder_ + "/ply/text",
+          "ply\nformat ascii 1.0\ncomment two triangles and a square\nelement vertex 4\n"
+          "property float x\nproperty float y\nproperty float z\n"
+          "element face 3\nproperty list uchar int vertex_indices\nend_header\n"
+          "0 0 0\n1 0 0\n1 1 0\n0 1 0.5\n3 0 1 2\n3 0 2 3\n4 0 1 2 3\n");
+    std::string binary =
+        "ply\nformat binary_little_endian 1.0\nelement vertex 3\n"
+        "property double x\nproperty float y\nproperty short z\n"
+        "element face 1\nproperty uchar flags\nproperty list int uint vertex_index\nend_header\n";
+    for (int i = 0; i < 3; ++i) {
+      const double x = i;
+      const float y = i == 1 ? 1.0F : 0.0F;
+      const int16_t z = 2;
+      binary.append(reinterpret_cast<const char*>(&x), sizeof(x));
+      binary.append(reinterpret_cast<const char*>(&y), sizeof(y));
+      binary.append(reinterpret_cast<const char*>(&z), sizeof(z));
+    }
+    binary.push_back('\1');
+    for (const int32_t word : {3, 0, 1, 2}) {
+      binary.append(reinterpret_cast<const char*>(&word), sizeof(word));
+    }
+    Write(folder_ + "/ply/binary", binary);
+  }
+
+  void WriteExr() const {
+    const std::string path = folder_ + "/exr/yard";
+    std::filesystem::create_directories(folder_ + "/exr");
+    const absl::Status status = WriteReadbackExr(path, yard_.file.View(), yard_.lights);
+    if (!status.ok() || !WriteExrVariants(path, folder_ + "/exr")) std::cerr << status << "\n";
+  }
+
+ private:
+  void Save(const std::string& name, const google::protobuf::Message& message) const {
+    Write(absl::StrCat(folder_, "/", name), message.SerializeAsString());
+  }
+
+  void SaveJson(const std::string& name, const google::protobuf::Message& message) const {
+    Write(absl::StrCat(folder_, "/", name), ProtoToJson(message).value());
+  }
+
+  void WriteStreams(v1::FitRequest fit) const {
+    const v1::Readback pixels = fit.readback();
+    const size_t num_bytes = pixels.depth().size();
+    FitStreamInput stream;
+    RemovePixels(fit.mutable_readback());
+    *stream.add_requests()->mutable_request() = fit;
+    *stream.add_requests() = PixelsOf(pixels, 0, 400);
+    *stream.add_requests() = PixelsOf(pixels, 400, num_bytes);
+    Save("fit_stream/bits", stream);
+
+    v1::FitRequest other = fit;
+    UseOtherForms(yard_, other.mutable_readback());
+    const v1::Readback planes = other.readback();
+    RemovePixels(other.mutable_readback());
+    stream.Clear();
+    *stream.add_requests()->mutable_request() = other;
+    stream.add_requests()->mutable_pixels()->set_depth(planes.depth());
+    for (int l = 0; l < planes.shadow_planes_size(); ++l) {
+      v1::PixelChunk& chunk = *stream.add_requests()->mutable_pixels();
+      chunk.set_shadow_plane(planes.shadow_planes(l));
+      chunk.set_shadow_plane_index(l);
+    }
+    Save("fit_stream/planes", stream);
+
+    TrackInput track;
+    *track.add_requests()->mutable_setup()->mutable_map() = SmallMap();
+    v1::TrackFrame frame;
+    *frame.mutable_readback() = pixels;
+    *frame.mutable_lights() = fit.lights();
+    for (int number = 1; number <= 2; ++number) {
+      frame.set_number(number);
+      *track.add_requests()->mutable_frame() = frame;
+    }
+    Save("track/whole", track);
+    *track.mutable_requests(0)->mutable_setup()->mutable_tracker() =
+        TrackerSettingsToProto(TrackerOptions::AsPublished());
+    track.mutable_requests()->RemoveLast();
+    RemovePixels(track.mutable_requests(1)->mutable_frame()->mutable_readback());
+    *track.add_requests()->mutable_pixels() = PixelsOf(pixels, 0, 400).pixels();
+    *track.add_requests()->mutable_pixels() = PixelsOf(pixels, 400, num_bytes).pixels();
+    Save("track/pieces", track);
+  }
+
+  SmallReadback yard_;
+  std::string scene_;
+  std::string folder_;
+};
+
+}  // namespace
+}  // namespace lightfit::fuzz
+
+int main(int argc, char** argv) {
+  if (argc != 3) {
+    std::cerr << "usage: " << argv[0] << " REPOSITORY FOLDER\n";
+    return 2;
+  }
+  const lightfit::fuzz::Seeds seeds(argv[1], argv[2]);
+  seeds.WriteCalls();
+  seeds.WriteSummaries();
+  seeds.WriteJson();
+  seeds.WritePly();
+  seeds.WriteExr();
+}
