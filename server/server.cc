@@ -222,8 +222,8 @@ bool Server::Drain(absl::Duration delay, absl::Duration limit) {
                     "stop",
                     num_cancelled == 0 ? std::string("all calls were answered")
                                        : absl::StrFormat("calls cancelled after %s: %d",
-                                                         num_cancelled,
-                                                         absl::FormatDuration(limit)));
+                                                         absl::FormatDuration(limit),
+                                                         num_cancelled));
   return calls_are_done && streams_are_done;
 }
 
