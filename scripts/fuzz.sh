@@ -59,7 +59,7 @@ report() {
     echo
     return 0
   fi
-  words=$(grep -a -m 1 -E '^SUMMARY|broken promise|ERROR: ' "$folder/log" || tail -n 1 "$folder/log")
+  words=$(grep -a -m 1 -E '^SUMMARY|broken promise|ERROR: |run interrupted' "$folder/log" || tail -n 1 "$folder/log")
   printf '  FINDING\n    %s\n    log: %s\n' "$words" "$folder/log"
   if [[ -n $finding ]]; then
     echo "    again: build/fuzz/bin/fuzz_$target $finding"

@@ -186,7 +186,7 @@ TEST(MalformedExr, AttributesLongerThanTheFileAreRefusedBeforeMemoryIsTaken) {
       for (const int32_t length : {std::numeric_limits<int32_t>::max(), 1 << 30, 1 << 20, -1}) {
         std::string bytes = whole;
         // A type that OpenEXR does not know may have any length.
-        bytes.replace(place + key.size() - 2, 1, "x");
+        bytes[place + key.size() - 2] = 'x';
         std::memcpy(&bytes[place + key.size()], &length, sizeof(length));
         const auto file = ReadReadbackExr(folder.Write("long.exr", bytes), kLights);
         EXPECT_EQ(file.status().code(), absl::StatusCode::kInvalidArgument);
