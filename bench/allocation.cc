@@ -13,7 +13,7 @@
 //
 // Every energy is that of a fit of its own to the read-back at that size. A light without a matrix
 // at any size is left out for all.
-#include "optimizer/allocation.h"
+#include "optimizer/sizing/allocation.h"
 
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -23,11 +23,11 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "base/number.h"
+#include "base/table.h"
 #include "bench/inputs.h"
-#include "cli/number.h"
-#include "cli/table.h"
 #include "optimizer/fit.h"
-#include "optimizer/map_shapes.h"
+#include "optimizer/sizing/map_shapes.h"
 
 namespace lightfit {
 namespace {

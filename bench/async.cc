@@ -20,8 +20,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "cli/table.h"
-#include "optimizer/async_optimizer.h"
+#include "base/table.h"
+#include "optimizer/tracking/async_optimizer.h"
 #include "tests/testing/frame_loop.h"
 
 namespace lightfit {

@@ -12,9 +12,9 @@
 
 #include <cstdint>
 
-#include "geometry/clip.h"
+#include "geometry/map_size.h"
+#include "optimizer/energy/summary.h"
 #include "optimizer/fit_options.h"
-#include "optimizer/summary.h"
 
 namespace lightfit {
 

@@ -18,12 +18,12 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "base/progress.h"
+#include "base/text_file.h"
 #include "bench/scene_set.h"
-#include "cli/compare_stage.h"
-#include "cli/progress.h"
-#include "io/text_file.h"
+#include "jobs/compare/stage.h"
+#include "optimizer/figures/foretell.h"
 #include "optimizer/fit.h"
-#include "optimizer/foretell.h"
 #include "render/judge.h"
 #include "render/readback_image.h"
 

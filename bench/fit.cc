@@ -42,12 +42,12 @@
 #include "bench/fit_input.h"
 #include "bench/medians.h"
 #include "bench/quality_case.h"
-#include "optimizer/axis_evaluator.h"
-#include "optimizer/cover.h"
-#include "optimizer/edge_normals.h"
-#include "optimizer/line_search.h"
-#include "optimizer/receivers.h"
-#include "optimizer/samples.h"
+#include "optimizer/readback/cover.h"
+#include "optimizer/readback/edge_normals.h"
+#include "optimizer/readback/samples.h"
+#include "optimizer/readback/surfaces.h"
+#include "optimizer/search/axis_evaluator.h"
+#include "optimizer/search/line_search.h"
 
 namespace lightfit {
 namespace {

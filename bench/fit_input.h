@@ -10,7 +10,7 @@
 
 #include "absl/types/span.h"
 #include "bench/inputs.h"
-#include "geometry/clip.h"
+#include "geometry/map_size.h"
 
 namespace lightfit {
 

@@ -11,7 +11,7 @@
 
 #include "absl/status/statusor.h"
 #include "geometry/light.h"
-#include "optimizer/readback.h"
+#include "optimizer/readback/readback.h"
 
 namespace lightfit {
 

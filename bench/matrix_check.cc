@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "optimizer/footprint.h"
-#include "optimizer/receivers.h"
+#include "geometry/affine_depth.h"
+#include "optimizer/energy/footprint.h"
+#include "optimizer/readback/surfaces.h"
 
 namespace lightfit {
 

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "geometry/clip.h"
 #include "geometry/light.h"
+#include "geometry/map_size.h"
 #include "optimizer/fit_options.h"
-#include "optimizer/readback.h"
-#include "optimizer/samples.h"
+#include "optimizer/readback/readback.h"
+#include "optimizer/readback/samples.h"
 
 namespace lightfit {
 

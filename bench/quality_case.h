@@ -10,10 +10,10 @@
 
 #include "absl/status/statusor.h"
 #include "bench/brute_force.h"
-#include "geometry/clip.h"
 #include "geometry/light.h"
+#include "geometry/map_size.h"
 #include "optimizer/fit_options.h"
-#include "optimizer/readback.h"
+#include "optimizer/readback/readback.h"
 
 namespace lightfit {
 

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "cli/compare_stage.h"
 #include "geometry/light.h"
+#include "jobs/compare/stage.h"
 #include "render/ray_caster.h"
 
 namespace lightfit {

@@ -15,11 +15,11 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "base/progress.h"
 #include "bench/scene_set.h"
 #include "bench/wrong_pixel_table.h"
-#include "cli/compare_stage.h"
-#include "cli/method_comparison.h"
-#include "cli/progress.h"
+#include "jobs/compare/rows.h"
+#include "jobs/compare/stage.h"
 
 namespace lightfit {
 namespace {

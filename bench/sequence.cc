@@ -15,13 +15,13 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "base/number.h"
+#include "base/parallel.h"
+#include "base/table.h"
 #include "bench/inputs.h"
-#include "cli/number.h"
-#include "cli/shot_run.h"
-#include "cli/shot_totals.h"
-#include "cli/table.h"
 #include "io/lights_file.h"
-#include "render/parallel.h"
+#include "jobs/shot/run.h"
+#include "jobs/shot/totals.h"
 
 namespace lightfit {
 namespace {

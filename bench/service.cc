@@ -27,17 +27,17 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "base/table.h"
 #include "bench/echo.grpc.pb.h"
 #include "bench/inputs.h"
-#include "cli/table.h"
-#include "io/camera_file.h"
-#include "io/lights_file.h"
-#include "io/summary_proto.h"
 #include "lightfit/v1/service.grpc.pb.h"
+#include "optimizer/energy/summary_total.h"
 #include "optimizer/fit.h"
-#include "optimizer/summary_total.h"
 #include "server/server.h"
 #include "server/work_pool.h"
+#include "wire/camera_proto.h"
+#include "wire/light_proto.h"
+#include "wire/summary_proto.h"
 
 namespace lightfit {
 namespace {

@@ -26,15 +26,15 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "base/table.h"
 #include "bench/inputs.h"
-#include "cli/table.h"
-#include "optimizer/allocation.h"
-#include "optimizer/evaluate.h"
+#include "optimizer/figures/evaluate.h"
 #include "optimizer/fit.h"
-#include "optimizer/map_shapes.h"
-#include "optimizer/tolerance.h"
-#include "optimizer/tracker.h"
-#include "tests/optimizer/hanging_lamp.h"
+#include "optimizer/sizing/allocation.h"
+#include "optimizer/sizing/map_shapes.h"
+#include "optimizer/sizing/tolerance.h"
+#include "optimizer/tracking/tracker.h"
+#include "tests/optimizer/tracking/hanging_lamp.h"
 
 namespace lightfit {
 namespace {

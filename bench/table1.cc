@@ -17,11 +17,11 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "base/progress.h"
 #include "bench/wrong_pixel_table.h"
-#include "cli/compare_stage.h"
-#include "cli/method_comparison.h"
-#include "cli/progress.h"
-#include "cli/scene_flags.h"
+#include "jobs/compare/rows.h"
+#include "jobs/compare/stage.h"
+#include "render/random_suns.h"
 #include "render/scene_generator.h"
 
 namespace lightfit {

@@ -7,7 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "io/text_file.h"
+#include "base/text_file.h"
 
 namespace lightfit {
 

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "absl/status/status.h"
-#include "cli/compare_choice.h"
-#include "cli/method_comparison.h"
+#include "jobs/compare/rows.h"
+#include "picture/compare_choice.h"
 
 namespace lightfit {
 

@@ -8,16 +8,16 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "calls/allocate_lights.h"
-#include "calls/fit_summary.h"
 #include "calls/message_text.h"
 #include "calls/pixel_buffer.h"
 #include "calls/request_fields.h"
 #include "calls/request_lights.h"
 #include "calls/request_options.h"
 #include "calls/summary_request.h"
-#include "io/options_proto.h"
-#include "io/proto_json.h"
+#include "jobs/allocate_lights.h"
+#include "jobs/fit_summary.h"
+#include "wire/options_proto.h"
+#include "wire/proto_json.h"
 
 namespace lightfit {
 namespace {

@@ -1,6 +1,6 @@
 #include "calls/finished_result.h"
 
-#include "io/proto_json.h"
+#include "wire/proto_json.h"
 
 namespace lightfit {
 

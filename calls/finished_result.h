@@ -9,8 +9,8 @@
 
 #include "absl/status/statusor.h"
 #include "calls/request_lights.h"
-#include "io/result_json.h"
 #include "lightfit/v1/result.pb.h"
+#include "wire/result_json.h"
 
 namespace lightfit {
 

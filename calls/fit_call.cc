@@ -8,9 +8,9 @@
 #include "calls/request_fields.h"
 #include "calls/request_lights.h"
 #include "calls/request_options.h"
-#include "io/result_json.h"
-#include "optimizer/evaluate.h"
+#include "optimizer/figures/evaluate.h"
 #include "optimizer/fit.h"
+#include "wire/result_json.h"
 
 namespace lightfit {
 namespace {

@@ -9,7 +9,7 @@
 #include "calls/call_context.h"
 #include "lightfit/v1/result.pb.h"
 #include "lightfit/v1/service.pb.h"
-#include "optimizer/readback.h"
+#include "optimizer/readback/readback.h"
 
 namespace lightfit {
 

@@ -8,8 +8,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "calls/request_lights.h"
-#include "io/camera_file.h"
-#include "optimizer/readback_kernels.h"
+#include "optimizer/readback/kernels.h"
+#include "wire/camera_proto.h"
 
 namespace lightfit {
 namespace {
@@ -140,7 +140,7 @@ absl::StatusOr<ReadbackHeader> ReadbackHeaderFromProto(const v1::Readback& proto
     return absl::InvalidArgumentError(absl::StrFormat(
         "readback.source: %d bytes, want at most %d", proto.source().size(), kMaxSourceBytes));
   }
-  const absl::StatusOr<CameraFile> camera = CameraFromProto(proto.camera());
+  const absl::StatusOr<StatedCamera> camera = CameraFromProto(proto.camera());
   if (!camera.ok()) return InReadback(camera.status());
   const absl::StatusOr<v1::DepthFormat> depth_format = DepthFormatOf(proto);
   if (!depth_format.ok()) return depth_format.status();

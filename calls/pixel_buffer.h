@@ -14,7 +14,7 @@
 #include "calls/call_context.h"
 #include "geometry/camera.h"
 #include "lightfit/v1/readback.pb.h"
-#include "optimizer/readback.h"
+#include "optimizer/readback/readback.h"
 
 namespace lightfit {
 

@@ -1,6 +1,7 @@
 #include "calls/request_fields.h"
 
-#include "optimizer/prepared_light.h"
+#include "geometry/map_size.h"
+#include "optimizer/light_view.h"
 
 namespace lightfit {
 

@@ -8,9 +8,9 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "geometry/clip.h"
-#include "io/matrix_proto.h"
 #include "lightfit/v1/result.pb.h"
 #include "optimizer/fit_options.h"
+#include "wire/matrix_proto.h"
 
 namespace lightfit {
 

@@ -5,7 +5,7 @@
 
 #include "absl/strings/str_format.h"
 #include "calls/message_text.h"
-#include "io/lights_file.h"
+#include "wire/light_proto.h"
 
 namespace lightfit {
 

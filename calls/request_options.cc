@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "absl/strings/str_format.h"
-#include "io/options_proto.h"
+#include "wire/options_proto.h"
 
 namespace lightfit {
 

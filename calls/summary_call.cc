@@ -2,11 +2,11 @@
 
 #include <string>
 
-#include "calls/fit_summary.h"
 #include "calls/request_fields.h"
 #include "calls/summary_request.h"
-#include "io/proto_json.h"
-#include "io/result_json.h"
+#include "jobs/fit_summary.h"
+#include "wire/proto_json.h"
+#include "wire/result_json.h"
 
 namespace lightfit {
 

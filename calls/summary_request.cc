@@ -5,13 +5,13 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "calls/fit_summary.h"
+#include "base/text_file.h"
 #include "calls/request_fields.h"
 #include "calls/request_options.h"
-#include "io/options_proto.h"
 #include "io/summary_file.h"
-#include "io/summary_proto.h"
-#include "io/text_file.h"
+#include "jobs/fit_summary.h"
+#include "wire/options_proto.h"
+#include "wire/summary_proto.h"
 
 namespace lightfit {
 namespace {

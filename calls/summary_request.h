@@ -11,10 +11,10 @@
 
 #include "absl/status/statusor.h"
 #include "calls/call_context.h"
-#include "io/summary_set.h"
 #include "lightfit/v1/options.pb.h"
 #include "lightfit/v1/summary.pb.h"
 #include "optimizer/fit_options.h"
+#include "wire/summary_set.h"
 
 namespace lightfit {
 

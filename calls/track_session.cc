@@ -9,7 +9,7 @@
 #include "calls/request_fields.h"
 #include "calls/request_lights.h"
 #include "calls/request_options.h"
-#include "io/shot_proto.h"
+#include "wire/shot_proto.h"
 
 namespace lightfit {
 namespace {

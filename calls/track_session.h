@@ -17,8 +17,8 @@
 #include "geometry/light.h"
 #include "lightfit/v1/result.pb.h"
 #include "lightfit/v1/service.pb.h"
-#include "optimizer/readback.h"
-#include "optimizer/tracker.h"
+#include "optimizer/readback/readback.h"
+#include "optimizer/tracking/tracker.h"
 
 namespace lightfit {
 

@@ -1,5 +1,6 @@
 #include "cli/allocate.h"
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -7,15 +8,16 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "calls/allocate_lights.h"
-#include "calls/fit_summary.h"
+#include "base/number.h"
+#include "base/output_file.h"
+#include "base/progress.h"
 #include "cli/allocate_inputs.h"
-#include "cli/allocate_report.h"
 #include "cli/exit_code.h"
-#include "cli/number.h"
-#include "cli/output_file.h"
-#include "cli/progress.h"
+#include "cli/reports/allocate_report.h"
 #include "cli/summary_inputs.h"
+#include "geometry/map_size.h"
+#include "jobs/allocate_lights.h"
+#include "jobs/fit_summary.h"
 
 namespace lightfit {
 namespace {

@@ -4,7 +4,7 @@
 // lights should be, for one frame or for all that were summarised.
 #pragma once
 
-#include "cli/allocate_flags.h"
+#include "cli/flags/allocate_flags.h"
 #include "cli/verb.h"
 
 namespace lightfit {

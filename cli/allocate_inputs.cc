@@ -7,9 +7,9 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "cli/choices.h"
-#include "cli/fit_inputs.h"
-#include "cli/suggest.h"
+#include "base/suggest.h"
+#include "cli/flags/choices.h"
+#include "cli/flags/fit_inputs.h"
 #include "cli/summary_inputs.h"
 
 namespace lightfit {

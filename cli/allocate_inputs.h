@@ -7,9 +7,9 @@
 
 #include "absl/status/statusor.h"
 #include "absl/types/optional.h"
-#include "calls/allocate_lights.h"
-#include "cli/allocate_flags.h"
+#include "cli/flags/allocate_flags.h"
 #include "io/readback_exr.h"
+#include "jobs/allocate_lights.h"
 
 namespace lightfit {
 

@@ -1,5 +1,6 @@
 #include "cli/compare.h"
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -7,15 +8,15 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "base/output_file.h"
+#include "base/progress.h"
+#include "base/text_file.h"
 #include "cli/compare_inputs.h"
-#include "cli/compare_json.h"
-#include "cli/compare_picture.h"
-#include "cli/compare_report.h"
 #include "cli/exit_code.h"
-#include "cli/fit_report.h"
-#include "cli/output_file.h"
-#include "cli/progress.h"
-#include "io/text_file.h"
+#include "cli/reports/compare_report.h"
+#include "cli/reports/fit_report.h"
+#include "jobs/compare/json.h"
+#include "picture/compare_page.h"
 
 namespace lightfit {
 namespace {

@@ -3,7 +3,7 @@
 // `lightfit compare SCENE|READBACK.exr`: every method side by side, on one light or many.
 #pragma once
 
-#include "cli/compare_flags.h"
+#include "cli/flags/compare_flags.h"
 #include "cli/verb.h"
 
 namespace lightfit {

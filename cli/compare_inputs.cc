@@ -6,7 +6,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "cli/suggest.h"
+#include "base/suggest.h"
+#include "render/sight.h"
 
 namespace lightfit {
 namespace {

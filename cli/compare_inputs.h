@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "cli/compare_flags.h"
-#include "cli/compare_stage.h"
-#include "cli/fit_inputs.h"
-#include "cli/method_comparison.h"
-#include "cli/scene_flags.h"
+#include "cli/flags/compare_flags.h"
+#include "cli/flags/fit_inputs.h"
+#include "cli/flags/scene_flags.h"
+#include "jobs/compare/rows.h"
+#include "jobs/compare/stage.h"
 
 namespace lightfit {
 

@@ -1,21 +1,22 @@
 #include "cli/fit.h"
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "cli/comparison.h"
+#include "base/output_file.h"
+#include "base/progress.h"
 #include "cli/exit_code.h"
-#include "cli/fit_inputs.h"
-#include "cli/fit_report.h"
 #include "cli/fit_summary.h"
-#include "cli/output_file.h"
-#include "cli/picture.h"
-#include "cli/progress.h"
-#include "cli/text.h"
-#include "io/result_json.h"
+#include "cli/flags/fit_inputs.h"
+#include "cli/reports/fit_report.h"
+#include "jobs/fit_comparison.h"
+#include "picture/fit_page.h"
+#include "picture/text.h"
+#include "wire/result_json.h"
 
 namespace lightfit {
 namespace {

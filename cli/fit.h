@@ -3,7 +3,7 @@
 // `lightfit fit READBACK.exr`: matrices, figures and a picture for the lights of one read-back.
 #pragma once
 
-#include "cli/fit_flags.h"
+#include "cli/flags/fit_flags.h"
 #include "cli/verb.h"
 
 namespace lightfit {

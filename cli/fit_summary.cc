@@ -5,14 +5,14 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "calls/fit_summary.h"
+#include "base/number.h"
+#include "base/output_file.h"
+#include "base/table.h"
 #include "cli/exit_code.h"
-#include "cli/fit_report.h"
-#include "cli/number.h"
-#include "cli/output_file.h"
+#include "cli/reports/fit_report.h"
 #include "cli/summary_inputs.h"
-#include "cli/table.h"
-#include "io/result_json.h"
+#include "jobs/fit_summary.h"
+#include "wire/result_json.h"
 
 namespace lightfit {
 namespace {

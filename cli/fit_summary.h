@@ -3,7 +3,7 @@
 // `lightfit fit --summary FILE...`: one map per light for all the frames that were summarised.
 #pragma once
 
-#include "cli/fit_flags.h"
+#include "cli/flags/fit_flags.h"
 
 namespace lightfit {
 

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
+#include "base/version.h"
 #include "cli/allocate.h"
 #include "cli/compare.h"
 #include "cli/exit_code.h"
@@ -45,7 +47,7 @@ constexpr char kFooter[] =
 
 int Main(int argc, char** argv) {
   CLI::App app("Fits shadow-map matrices to what the camera sees.", "lightfit");
-  app.set_version_flag("--version", "lightfit " LIGHTFIT_VERSION);
+  app.set_version_flag("--version", absl::StrCat("lightfit ", kVersion));
   app.require_subcommand(1);
   app.footer(kFooter);
   std::vector<std::pair<CLI::App*, std::function<int()>>> verbs;

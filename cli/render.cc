@@ -1,5 +1,6 @@
 #include "cli/render.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -10,18 +11,19 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "base/output_file.h"
+#include "base/progress.h"
+#include "base/suggest.h"
+#include "base/table.h"
+#include "base/text_file.h"
 #include "cli/exit_code.h"
-#include "cli/output_file.h"
-#include "cli/progress.h"
-#include "cli/render_picture.h"
-#include "cli/scene_flags.h"
-#include "cli/suggest.h"
-#include "cli/table.h"
-#include "io/lights_file.h"
-#include "io/proto_json.h"
+#include "cli/flags/scene_flags.h"
 #include "io/readback_exr_write.h"
-#include "io/text_file.h"
+#include "picture/render_page.h"
 #include "render/readback_image.h"
+#include "render/sight.h"
+#include "wire/light_proto.h"
+#include "wire/proto_json.h"
 
 namespace lightfit {
 namespace {

@@ -3,8 +3,11 @@
 // `lightfit render`: a read-back with exact depth and shadows, and a picture, from a scene.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+namespace CLI {
+class App;
+}
 
 namespace lightfit {
 

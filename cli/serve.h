@@ -3,11 +3,14 @@
 // `lightfit serve`: the gRPC server, until it is told to stop.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 
 #include "absl/time/time.h"
 #include "server/server_options.h"
+
+namespace CLI {
+class App;
+}
 
 namespace lightfit {
 

@@ -1,17 +1,18 @@
 #include "cli/shot.h"
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "cli/canvas.h"
 #include "cli/exit_code.h"
-#include "cli/shot_plot.h"
-#include "cli/shot_report.h"
-#include "cli/shot_run.h"
-#include "cli/text.h"
+#include "cli/reports/shot_report.h"
+#include "jobs/shot/run.h"
+#include "picture/canvas.h"
+#include "picture/shot_page.h"
+#include "picture/text.h"
 
 namespace lightfit {
 namespace {

@@ -3,7 +3,7 @@
 // `lightfit shot FOLDER`: matrices for all frames of a shot, per frame, tracked and once for all.
 #pragma once
 
-#include "cli/shot_flags.h"
+#include "cli/flags/shot_flags.h"
 #include "cli/verb.h"
 
 namespace lightfit {

@@ -1,5 +1,6 @@
 #include "cli/summarize.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -12,17 +13,18 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_replace.h"
-#include "calls/fit_summary.h"
+#include "base/number.h"
+#include "base/output_file.h"
+#include "base/parallel.h"
+#include "base/progress.h"
+#include "base/text_file.h"
+#include "base/version.h"
 #include "cli/exit_code.h"
-#include "cli/fit_inputs.h"
-#include "cli/number.h"
-#include "cli/output_file.h"
-#include "cli/progress.h"
+#include "cli/flags/fit_inputs.h"
 #include "cli/summary_inputs.h"
-#include "io/result_json.h"
-#include "io/text_file.h"
+#include "jobs/fit_summary.h"
 #include "optimizer/fit.h"
-#include "render/parallel.h"
+#include "wire/result_json.h"
 
 namespace lightfit {
 namespace {
@@ -288,7 +290,7 @@ int RunSummarize(const SummarizeFlags& flags) {
   if (!sum.ok()) return Fail(kExitBadInput, sum.status());
   absl::Status status = CheckHeld(flags.fit, sum->options);
   if (status.ok()) {
-    status = WriteSummaryFile(flags.output_path, *sum, "lightfit " LIGHTFIT_VERSION);
+    status = WriteSummaryFile(flags.output_path, *sum, absl::StrCat("lightfit ", kVersion));
   }
   if (!status.ok()) return Fail(kExitBadInput, status);
   if (!flags.fit.quiet) std::fputs(ReportText(*sum).c_str(), stdout);

@@ -5,7 +5,7 @@
 // --summary`.
 #pragma once
 
-#include "cli/fit_flags.h"
+#include "cli/flags/fit_flags.h"
 #include "cli/verb.h"
 
 namespace lightfit {

@@ -5,10 +5,10 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
-#include "calls/fit_summary.h"
-#include "cli/choices.h"
-#include "cli/fit_inputs.h"
-#include "io/text_file.h"
+#include "base/text_file.h"
+#include "cli/flags/choices.h"
+#include "cli/flags/fit_inputs.h"
+#include "jobs/fit_summary.h"
 
 namespace lightfit {
 

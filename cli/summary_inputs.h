@@ -10,7 +10,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "cli/fit_flags.h"
+#include "cli/flags/fit_flags.h"
 #include "io/summary_file.h"
 
 namespace lightfit {

@@ -3,8 +3,11 @@
 // A verb of the command line, `lightfit <verb> ...`: one file pair each, listed in cli/main.cc.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+namespace CLI {
+class App;
+}
 
 namespace lightfit {
 

@@ -8,9 +8,9 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(LIGHTFIT_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/lightfit)
 
-install(TARGETS lightfit_geometry lightfit_optimizer EXPORT lightfitTargets
+install(TARGETS lightfit_base lightfit_geometry lightfit_optimizer EXPORT lightfitTargets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(DIRECTORY geometry optimizer DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lightfit
+install(DIRECTORY base geometry optimizer DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lightfit
   FILES_MATCHING PATTERN "*.h")
 if(TARGET lightfit)
   install(TARGETS lightfit RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})

@@ -6,8 +6,8 @@
 #include <cstdint>
 
 #include "absl/status/statusor.h"
-#include "io/proto_json.h"
 #include "io/summary_file.h"
+#include "wire/proto_json.h"
 
 namespace lightfit::fuzz {
 namespace {

@@ -12,22 +12,23 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "base/text_file.h"
 #include "calls/allocate_call.h"
 #include "calls/fit_call.h"
 #include "calls/track_session.h"
 #include "fuzz/exr_variants.h"
 #include "fuzz/inputs.pb.h"
-#include "io/camera_file.h"
 #include "io/lights_file.h"
-#include "io/options_proto.h"
-#include "io/proto_json.h"
 #include "io/readback_exr.h"
 #include "io/readback_exr_write.h"
-#include "io/shot_proto.h"
 #include "io/summary_file.h"
-#include "io/summary_proto.h"
-#include "io/text_file.h"
 #include "optimizer/fit.h"
+#include "wire/camera_proto.h"
+#include "wire/light_proto.h"
+#include "wire/options_proto.h"
+#include "wire/proto_json.h"
+#include "wire/shot_proto.h"
+#include "wire/summary_proto.h"
 
 namespace lightfit::fuzz {
 namespace {

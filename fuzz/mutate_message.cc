@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "io/utf8_text.h"
+#include "base/utf8.h"
 
 namespace lightfit::fuzz {
 namespace {

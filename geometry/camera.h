@@ -29,6 +29,9 @@ enum class DepthKind {
 
 const char* DepthKindName(DepthKind kind);
 
+// Whether depth lies between the clip planes, so that they must be known.
+bool IsNdc(DepthKind kind);
+
 struct ClipConvention;  // geometry/clip.h
 
 // A perspective or orthographic camera. Camera space is x, y as you like and z forward, in world
@@ -76,65 +79,5 @@ absl::StatusOr<Camera> LookAtCamera(const Eigen::Vector3d& eye,
                                     double vertical_fov_rad,
                                     int width,
                                     int height);
-
-// Turns depth values of any kind into affine depth d, one camera and kind at a time.
-class AffineDepth {
- public:
-  AffineDepth(const Camera& camera, DepthKind kind);
-
-  // Affine depth of the value `depth` at the pixel with column x and row y (integers, the centre is
-  // meant). Only meaningful where IsSurface(depth).
-  double At(int x, int y, double depth) const;
-
-  // Whether `depth` is a surface: finite, in front of the camera and nearer than the background.
-  // The background is at or beyond kBackgroundDepth (kCameraZ, kDistance) or on the far plane
-  // (NDC).
-  bool IsSurface(double depth) const { return depth > surface_min_ && depth < surface_max_; }
-
-  // Whether `depth` is neither a surface nor a background value: NaN, -inf, zero or negative
-  // distance, NDC outside its range.
-  bool IsInvalid(double depth) const {
-    return !IsSurface(depth) && !(depth >= background_min_ && depth <= background_max_);
-  }
-
-  // Surfaces are the open interval (surface_min, surface_max); NaN compares false.
-  double surface_min() const { return surface_min_; }
-  double surface_max() const { return surface_max_; }
-
-  // Values that mean "nothing hit", both ends included.
-  double background_min() const { return background_min_; }
-  double background_max() const { return background_max_; }
-
-  // True when At() depends on depth alone and is monotonic in it (every kind but kDistance).
-  bool is_pixel_independent() const { return kind_ != DepthKind::kDistance; }
-
- private:
-  // Length of the ray through a pixel's centre to the plane at unit depth.
-  double RayLength(int x, int y) const;
-
-  DepthKind kind_;
-  bool orthographic_;
-  double surface_min_, surface_max_;
-  double background_min_, background_max_;
-  double scale_, offset_;  // NDC: d = (depth - offset) * scale
-  Eigen::Matrix3d camera_from_screen_;
-};
-
-inline double AffineDepth::At(int x, int y, double depth) const {
-  switch (kind_) {
-    case DepthKind::kCameraZ:
-      return orthographic_ ? depth : 1.0 / depth;
-    case DepthKind::kDistance:
-      return orthographic_ ? depth : RayLength(x, y) / depth;
-    case DepthKind::kNdcZeroToOne:
-    case DepthKind::kNdcMinusOneToOne:
-    case DepthKind::kNdcReversedZeroToOne:
-      return (depth - offset_) * scale_;
-  }
-  return 0.0;
-}
-
-// Renderers write "nothing hit" as 1e10 (Cycles), infinity, or the largest float. World units.
-inline constexpr double kBackgroundDepth = 1e9;
 
 }  // namespace lightfit

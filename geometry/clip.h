@@ -7,12 +7,9 @@
 
 #include <Eigen/Core>
 
-namespace lightfit {
+#include "geometry/map_size.h"
 
-struct MapSize {
-  int width = 0;   // texels
-  int height = 0;  // texels
-};
+namespace lightfit {
 
 // Texel (0, 0) is the first in memory. `y_up` says whether clip y = +1 is the first row (Direct3D
 // and Metal textures) or y = -1 is (Vulkan, OpenGL).

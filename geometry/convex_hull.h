@@ -8,9 +8,9 @@
 #include <Eigen/Core>
 
 #include "absl/types/span.h"
+#include "base/scratch.h"
 #include "geometry/octagon.h"
 #include "geometry/polygon.h"
-#include "geometry/scratch.h"
 
 namespace lightfit {
 

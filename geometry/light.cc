@@ -97,4 +97,9 @@ Eigen::Matrix<double, 3, 4> RayFromWorld(const Light& light, const Eigen::Vector
   return ray_from_world;
 }
 
+absl::Status CheckStop(const std::stop_token& stop, const Light& light) {
+  if (!stop.stop_requested()) return absl::OkStatus();
+  return CheckStop(stop, absl::StrFormat("light \"%s\"", light.name));
+}
+
 }  // namespace lightfit

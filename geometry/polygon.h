@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "geometry/scratch.h"
+#include "base/scratch.h"
 
 namespace lightfit {
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/scratch.h"
 #include "geometry/convex_hull.h"
 #include "geometry/enclosing_rectangle.h"
-#include "geometry/scratch.h"
 
 namespace lightfit {
 

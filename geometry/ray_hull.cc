@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "geometry/exact_sum.h"
+#include "base/exact_sum.h"
 
 namespace lightfit {
 

@@ -6,7 +6,7 @@
 
 #include "absl/strings/str_format.h"
 #include "absl/strings/string_view.h"
-#include "io/utf8_text.h"
+#include "base/utf8.h"
 
 namespace lightfit::internal {
 

@@ -7,9 +7,9 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "base/text_file.h"
+#include "base/utf8.h"
 #include "io/exr_header.h"
-#include "io/text_file.h"
-#include "io/utf8_text.h"
 
 namespace lightfit::internal {
 

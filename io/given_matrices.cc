@@ -8,10 +8,11 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
-#include "io/matrix_proto.h"
-#include "io/proto_json.h"
-#include "io/text_file.h"
+#include "base/text_file.h"
+#include "geometry/map_size.h"
 #include "lightfit/v1/result.pb.h"
+#include "wire/matrix_proto.h"
+#include "wire/proto_json.h"
 
 namespace lightfit {
 
@@ -71,8 +72,7 @@ absl::StatusOr<MapSize> SizeOf(const Value& value) {
     return found == nullptr ? 0.0 : found->number_value();
   };
   const double width = side("width"), height = side("height");
-  constexpr double kMaxMapSize = 1 << 20;
-  if (!(width >= 1.0 && height >= 1.0 && width <= kMaxMapSize && height <= kMaxMapSize)) {
+  if (!(width >= 1.0 && height >= 1.0 && width <= kMaxMapSide && height <= kMaxMapSide)) {
     return absl::InvalidArgumentError(absl::StrFormat(
         "map = %gx%g, want {\"width\": ..., \"height\": ...} in texels", width, height));
   }

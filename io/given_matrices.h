@@ -15,7 +15,7 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 #include "absl/types/optional.h"
-#include "geometry/clip.h"
+#include "geometry/map_size.h"
 
 namespace lightfit {
 

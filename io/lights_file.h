@@ -17,7 +17,6 @@
 #include "absl/strings/string_view.h"
 #include "absl/types/span.h"
 #include "geometry/light.h"
-#include "lightfit/v1/light.pb.h"
 
 namespace lightfit {
 
@@ -26,11 +25,5 @@ absl::StatusOr<std::vector<Light>> ParseLightsJson(absl::string_view json);
 
 // "NAME=point:x,y,z" or "NAME=sun:x,y,z". The shadow_bit is 0.
 absl::StatusOr<Light> ParseLight(absl::string_view text);
-
-// Distinct names, at most kMaxLights, each of them valid: for lists put together by hand.
-absl::Status ValidateLights(absl::Span<const Light> lights);
-
-absl::StatusOr<Light> LightFromProto(const v1::Light& proto);
-v1::Light LightToProto(const Light& light);
 
 }  // namespace lightfit

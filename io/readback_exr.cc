@@ -6,6 +6,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "geometry/affine_depth.h"
 #include "io/camera_exr_input.h"
 #include "io/exr_input.h"
 

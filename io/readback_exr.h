@@ -22,7 +22,7 @@
 #include "geometry/camera.h"
 #include "geometry/light.h"
 #include "io/camera_exr.h"
-#include "optimizer/readback.h"
+#include "optimizer/readback/readback.h"
 
 namespace lightfit {
 

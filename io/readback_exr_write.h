@@ -14,7 +14,7 @@
 #include "absl/status/status.h"
 #include "absl/types/span.h"
 #include "geometry/light.h"
-#include "optimizer/readback.h"
+#include "optimizer/readback/readback.h"
 
 namespace lightfit {
 

@@ -9,8 +9,8 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "io/summary_proto.h"
-#include "io/text_file.h"
+#include "base/text_file.h"
+#include "wire/summary_proto.h"
 
 namespace lightfit {
 

@@ -17,7 +17,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
-#include "io/summary_set.h"
+#include "wire/summary_set.h"
 
 namespace lightfit {
 

@@ -11,6 +11,7 @@
 #include "geometry/convex_hull.h"
 #include "geometry/enclosing_rectangle.h"
 #include "geometry/homography.h"
+#include "geometry/map_size.h"
 #include "geometry/ray_cone.h"
 #include "methods/view_body.h"
 
@@ -113,14 +114,7 @@ absl::Status ValidateMethodInput(const MethodInput& input) {
         high.y(),
         high.z()));
   }
-  constexpr int kMaxMapSize = 1 << 20;
-  if (input.map.width < 1 || input.map.height < 1 || input.map.width > kMaxMapSize ||
-      input.map.height > kMaxMapSize) {
-    return absl::InvalidArgumentError(absl::StrFormat("map = %dx%d, want 1 ... %d texels each way",
-                                                      input.map.width,
-                                                      input.map.height,
-                                                      kMaxMapSize));
-  }
+  if (absl::Status status = ValidateMapSize(input.map); !status.ok()) return status;
   if (input.plane.has_value() &&
       (!input.plane->coeffs().allFinite() || std::abs(input.plane->normal().norm() - 1.0) > 1e-6)) {
     return absl::InvalidArgumentError(

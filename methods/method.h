@@ -20,8 +20,8 @@
 
 #include "absl/status/statusor.h"
 #include "geometry/camera.h"
-#include "geometry/clip.h"
 #include "geometry/light.h"
+#include "geometry/map_size.h"
 
 namespace lightfit {
 

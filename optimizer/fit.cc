@@ -4,11 +4,12 @@
 #include <utility>
 
 #include "absl/strings/str_format.h"
+#include "base/stop.h"
 #include "geometry/homography.h"
-#include "optimizer/l1_weights.h"
-#include "optimizer/prepared_light.h"
-#include "optimizer/receivers.h"
-#include "optimizer/stop.h"
+#include "geometry/map_size.h"
+#include "optimizer/energy/l1_weights.h"
+#include "optimizer/light_view.h"
+#include "optimizer/readback/surfaces.h"
 
 namespace lightfit {
 

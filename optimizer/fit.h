@@ -11,19 +11,19 @@
 //          Cancelled: FitOptions::stop said so; of several lights those done before it are there.
 // Threads: functions share nothing; call them from as many threads as you like.
 // Memory:  inside a ScratchScope all of it, results included, comes from there, and a pool that has
-//          seen the like before allocates nothing. geometry/scratch.h
+//          seen the like before allocates nothing. base/scratch.h
 #pragma once
 
 #include <Eigen/Core>
 
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
+#include "base/scratch.h"
 #include "geometry/light.h"
-#include "geometry/scratch.h"
+#include "optimizer/energy/summary.h"
 #include "optimizer/fit_options.h"
 #include "optimizer/light_matrix.h"
-#include "optimizer/readback.h"
-#include "optimizer/summary.h"
+#include "optimizer/readback/readback.h"
 
 namespace lightfit {
 
@@ -44,10 +44,10 @@ LightMatrices FitLights(const Readback& readback,
                         const FitOptions& options = {});
 
 // The two halves of FitLight: everything the read-back has to say about this light, in about a
-// kilobyte, and the fit from that alone. Summaries of one light add (optimizer/summary_total.h).
-// For the L1 metrics Summarize() weighs the samples by their footprints in the best map of this
-// read-back, and Fit() keeps to those weights; its energies are then bounds, see
-// Summary::footprint_sum. Statistics beyond the RMS are left at 0.
+// kilobyte, and the fit from that alone. Summaries of one light add
+// (optimizer/energy/summary_total.h). For the L1 metrics Summarize() weighs the samples by their
+// footprints in the best map of this read-back, and Fit() keeps to those weights; its energies are
+// then bounds, see Summary::footprint_sum. Statistics beyond the RMS are left at 0.
 absl::StatusOr<Summary> Summarize(const Readback& readback,
                                   const Light& light,
                                   const FitOptions& options = {});

@@ -1,22 +1,6 @@
 #include "optimizer/fit_options.h"
 
-#include <cmath>
-
-#include "absl/strings/str_format.h"
-#include "geometry/enclosing_rectangle.h"
-
 namespace lightfit {
-
-namespace {
-
-absl::Status OutOfRange(const char* field, double value, const char* want) {
-  return absl::InvalidArgumentError(
-      absl::StrFormat("options.%s = %g, want %s", field, value, want));
-}
-
-}  // namespace
-
-bool IsL1(Metric metric) { return metric == Metric::kL1 || metric == Metric::kL1AcrossEdge; }
 
 FitOptions FitOptions::AsPublished() {
   FitOptions options;
@@ -33,62 +17,8 @@ FitOptions FitOptions::AsPublished() {
 }
 
 absl::Status ValidateFitOptions(const FitOptions& options) {
-  const SampleOptions& samples = options.samples;
-  // Written so that NaN fails.
-  if (!(samples.max_depth_bend > 0.0 && samples.max_depth_bend <= 1.0)) {
-    return OutOfRange("samples.max_depth_bend", samples.max_depth_bend, "more than 0, at most 1");
-  }
-  if (!(samples.depth_noise >= 0.0 && std::isfinite(samples.depth_noise))) {
-    return OutOfRange("samples.depth_noise", samples.depth_noise, "0 or more");
-  }
-  if (!(samples.min_cos_light >= 0.0 && samples.min_cos_light < 1.0)) {
-    return OutOfRange("samples.min_cos_light", samples.min_cos_light, "0 or more, less than 1");
-  }
-  if (!(samples.min_cos_eye >= 0.0 && samples.min_cos_eye < 1.0)) {
-    return OutOfRange("samples.min_cos_eye", samples.min_cos_eye, "0 or more, less than 1");
-  }
-  if (samples.min_samples < 1) {
-    return OutOfRange("samples.min_samples", samples.min_samples, "1 or more");
-  }
-  if (samples.edge_window < 1 || samples.edge_window > 8) {
-    return OutOfRange("samples.edge_window", samples.edge_window, "1 ... 8 pixels");
-  }
-  if (!(options.margin_percent >= 0.0 && options.margin_percent <= 100.0)) {
-    return OutOfRange("margin_percent", options.margin_percent, "0 ... 100");
-  }
-  if (!(options.margin_texels >= 0.0 && std::isfinite(options.margin_texels))) {
-    return OutOfRange("margin_texels", options.margin_texels, "0 or more texels");
-  }
-  if (!(options.min_w > 0.0 && options.min_w < 1.0)) {
-    return OutOfRange("min_w", options.min_w, "more than 0, less than 1");
-  }
-  if (!(options.along_edge_share > 0.0 && options.along_edge_share <= 1.0)) {
-    return OutOfRange("along_edge_share", options.along_edge_share, "more than 0, at most 1");
-  }
-  if (options.reweighting_rounds < 1) {
-    return OutOfRange("reweighting_rounds", options.reweighting_rounds, "1 or more");
-  }
-  if (options.line_search_rounds < 1) {
-    return OutOfRange("line_search_rounds", options.line_search_rounds, "1 or more");
-  }
-  if (options.grid_directions < 3) {
-    return OutOfRange("grid_directions", options.grid_directions, "3 or more");
-  }
-  if (options.sample_by_sample && options.affine == Affine::kMinEnergyParallelogram) {
-    return absl::InvalidArgumentError(
-        "options.sample_by_sample: the parallelogram of least energy needs the summary; choose "
-        "another fitter or leave sample_by_sample off");
-  }
-  if (options.sample_by_sample && options.search != Search::kFocused &&
-      options.search != Search::kRotationLineSearch) {
-    return absl::InvalidArgumentError(
-        "options.sample_by_sample: only kFocused and kRotationLineSearch run sample by sample");
-  }
-  if (options.affine == Affine::kMinAreaRectangleCgal) {
-    const Polygon triangle = {{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}};
-    return MinAreaRectangleCgal(triangle).status();
-  }
-  return absl::OkStatus();
+  if (absl::Status status = ValidateSampleOptions(options.samples); !status.ok()) return status;
+  return ValidateSearchOptions(options);
 }
 
 }  // namespace lightfit

@@ -5,20 +5,6 @@
 
 namespace lightfit {
 
-const char* StopReasonName(StopReason reason) {
-  switch (reason) {
-    case StopReason::kNoSearch:
-      return "no_search";
-    case StopReason::kConverged:
-      return "converged";
-    case StopReason::kRoundLimit:
-      return "round_limit";
-    case StopReason::kAxisAtLimit:
-      return "axis_at_limit";
-  }
-  return "unknown";
-}
-
 std::string LightMatrix::BriefReport() const {
   return absl::StrFormat("%s: %dx%d, energy %.6g (start %.6g), rms %.4g px, worst %.4g px, %s",
                          absl::string_view(light_name),

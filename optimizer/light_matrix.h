@@ -4,52 +4,15 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <string>
-#include <string_view>
 
-#include "geometry/clip.h"
-#include "geometry/scratch.h"
+#include "base/scratch.h"
+#include "geometry/map_size.h"
+#include "optimizer/energy/footprint.h"
+#include "optimizer/readback/sample_counts.h"
+#include "optimizer/search/search_result.h"
 
 namespace lightfit {
-
-// Where the candidate samples of one light went. Counts of read-back pixels.
-struct SampleCounts {
-  int64_t receivers = 0;      // pixels with a surface
-  int64_t invalid_depth = 0;  // pixels with NaN, negative or out-of-range depth: ignored
-  int64_t candidates = 0;     // pixels whose shadow bit differs from a neighbour's
-  int64_t background = 0;     // candidates without a surface
-  int64_t discontinuity = 0;  // candidates at a depth discontinuity
-  int64_t facing_away = 0;    // candidates whose surface, or whose lit side, faces away
-  int64_t edge_on = 0;        // candidates edge-on to the light or the eye
-  int64_t used = 0;           // candidates - all of the above but receivers, invalid_depth
-};
-
-// How far one texel reaches on the screen: sqrt((|dS/du|^2 + |dS/dv|^2) / 2), so that a map that is
-// one-to-one with the read-back has footprint 1. Read-back pixels per texel.
-struct FootprintStatistics {
-  double rms = 0;     // always there: it follows from the energy
-  double median = 0;  // the rest are 0 unless FitOptions::compute_statistics
-  double p99 = 0;
-  double worst = 0;
-};
-
-enum class StopReason {
-  kNoSearch,     // kFocused: there was nothing to search
-  kConverged,    // no neighbour of the axis is better
-  kRoundLimit,   // the rounds asked for are done
-  kAxisAtLimit,  // the best axis lies on the limit of the warp (FitOptions::min_w)
-};
-
-const char* StopReasonName(StopReason reason);
-
-// One accepted step of the search.
-struct TraceStep {
-  // A literal: "start", "line_search", "grid", "refine", "polish", "exact".
-  std::string_view station;
-  int evaluations = 0;  // matrices evaluated so far
-  double energy = 0;
-};
 
 struct LightMatrix {
   ScratchString light_name;

@@ -21,8 +21,8 @@
 
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
-#include "geometry/clip.h"
 #include "geometry/light.h"
+#include "geometry/map_size.h"
 #include "render/surface_image.h"
 #include "render/true_lighting.h"
 

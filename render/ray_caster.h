@@ -11,7 +11,7 @@
 #include <memory>
 
 #include "absl/status/statusor.h"
-#include "render/parallel.h"
+#include "base/parallel.h"
 #include "render/scene.h"
 
 namespace lightfit {

@@ -11,7 +11,7 @@
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
 #include "geometry/light.h"
-#include "optimizer/readback.h"
+#include "optimizer/readback/readback.h"
 #include "render/ray_caster.h"
 #include "render/surface_image.h"
 #include "render/true_lighting.h"

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "absl/types/span.h"
-#include "geometry/clip.h"
 #include "geometry/light.h"
+#include "geometry/map_size.h"
 #include "render/ray_caster.h"
 
 namespace lightfit {

@@ -13,6 +13,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/time/clock.h"
+#include "base/version.h"
 #include "server/call.h"
 #include "server/library_log.h"
 #include "server/listen_address.h"
@@ -106,7 +107,7 @@ struct Server::Parts {
   Parts(const ServerOptions& options, CallLog opened_log)
       : log(std::move(opened_log)),
         library_log(&log),
-        metrics(LIGHTFIT_VERSION, options.limits.memory_bytes),
+        metrics(kVersion, options.limits.memory_bytes),
         calls(options.limits, &metrics, &log),
         service(&calls) {}
 
@@ -180,7 +181,7 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(
   server->parts_->log.Event(LogLevel::kInfo,
                             "start",
                             absl::StrCat("listening on ", server->address_),
-                            {{"version", LIGHTFIT_VERSION},
+                            {{"version", kVersion},
                              {"tls", options.tls.has_value() ? "on" : "off"},
                              {"threads", absl::StrCat(options.limits.num_threads)}});
   return server;

@@ -19,7 +19,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
 #include "absl/time/clock.h"
-#include "io/text_file.h"
+#include "base/text_file.h"
 
 namespace lightfit {
 namespace {

@@ -13,7 +13,7 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
-#include "io/text_file.h"
+#include "base/text_file.h"
 
 namespace lightfit {
 namespace {

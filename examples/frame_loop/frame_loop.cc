@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "optimizer/async_optimizer.h"
+#include "optimizer/tracking/async_optimizer.h"
 #include "render/readback_image.h"
 #include "render/scene_generator.h"
 

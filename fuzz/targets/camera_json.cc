@@ -2,6 +2,7 @@
 #include "fuzz/input_form.h"
 #include "fuzz/promises.h"
 #include "io/camera_file.h"
+#include "wire/camera_proto.h"
 
 namespace lightfit::fuzz {
 
@@ -9,7 +10,7 @@ InputForm FormOfInput() { return {&v1::Camera::default_instance(), Encoding::kJs
 
 namespace {
 
-void PromiseCamera(const absl::StatusOr<CameraFile>& file) {
+void PromiseCamera(const absl::StatusOr<StatedCamera>& file) {
   PromiseOkOrError(file.status());
   if (!file.ok()) return;
   const Camera& camera = file->camera;
@@ -17,7 +18,7 @@ void PromiseCamera(const absl::StatusOr<CameraFile>& file) {
           "a camera from a file can be used");
   const v1::Camera proto = CameraToProto(camera, file->depth_kind);
   PromiseMessage(proto);
-  const absl::StatusOr<CameraFile> read = CameraFromProto(proto);
+  const absl::StatusOr<StatedCamera> read = CameraFromProto(proto);
   Promise(read.ok(), "a camera that was written can be read");
   Promise(read->camera.camera_from_world == camera.camera_from_world &&
               read->camera.screen_from_camera == camera.screen_from_camera &&

@@ -6,8 +6,8 @@
 #include "fuzz/memory_file.h"
 #include "fuzz/promises.h"
 #include "io/camera_exr.h"
-#include "io/camera_file.h"
 #include "io/readback_exr.h"
+#include "wire/camera_proto.h"
 
 namespace lightfit::fuzz {
 namespace {

@@ -4,7 +4,8 @@
 #include "fuzz/input_form.h"
 #include "fuzz/promises.h"
 #include "io/lights_file.h"
-#include "io/proto_json.h"
+#include "wire/light_proto.h"
+#include "wire/proto_json.h"
 
 namespace lightfit::fuzz {
 

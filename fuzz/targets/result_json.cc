@@ -5,11 +5,11 @@
 
 #include "fuzz/input_form.h"
 #include "fuzz/promises.h"
-#include "io/lights_file.h"
-#include "io/proto_json.h"
-#include "io/shot_proto.h"
 #include "lightfit/v1/allocation.pb.h"
 #include "lightfit/v1/result.pb.h"
+#include "wire/light_proto.h"
+#include "wire/proto_json.h"
+#include "wire/shot_proto.h"
 
 namespace lightfit::fuzz {
 

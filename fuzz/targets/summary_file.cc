@@ -1,12 +1,12 @@
 // Summary files: read, written again, added up, fitted.
 #include "io/summary_file.h"
 
-#include "calls/fit_summary.h"
 #include "fuzz/calls.h"
 #include "fuzz/input_form.h"
 #include "fuzz/promises.h"
-#include "io/result_json.h"
+#include "jobs/fit_summary.h"
 #include "lightfit/v1/summary.pb.h"
+#include "wire/result_json.h"
 
 namespace lightfit::fuzz {
 

@@ -31,12 +31,12 @@
 #include "calls/summary_call.h"
 #include "calls/track_session.h"
 #include "io/camera_convention.h"
-#include "io/camera_file.h"
 #include "io/readback_exr.h"
 #include "lightfit/v1/camera.pb.h"
 #include "lightfit/v1/light.pb.h"
 #include "lightfit/v1/service.pb.h"
 #include "python/native/stoppable.h"
+#include "wire/camera_proto.h"
 
 namespace lightfit {
 namespace {
@@ -209,7 +209,7 @@ absl::StatusOr<ReadbackExrOptions> ExrOptionsOf(const py::dict& fields) {
       DepthKindFromProto(static_cast<v1::DepthKind>(depth_kind_number));
   if (!depth_kind.ok()) return depth_kind.status();
   if (!camera_bytes.empty()) {
-    absl::StatusOr<CameraFile> camera = CameraFromProto(Parsed<v1::Camera>(camera_bytes));
+    absl::StatusOr<StatedCamera> camera = CameraFromProto(Parsed<v1::Camera>(camera_bytes));
     if (!camera.ok()) return camera.status();
     options.camera = camera->camera;
     if (!depth_kind->has_value()) *depth_kind = camera->depth_kind;

@@ -9,15 +9,15 @@
 #include <utility>
 #include <vector>
 
-#include "io/options_proto.h"
-#include "optimizer/allocation.h"
-#include "optimizer/evaluate.h"
+#include "optimizer/figures/evaluate.h"
 #include "optimizer/fit.h"
-#include "optimizer/map_shapes.h"
-#include "optimizer/tolerance.h"
+#include "optimizer/sizing/allocation.h"
+#include "optimizer/sizing/map_shapes.h"
+#include "optimizer/sizing/tolerance.h"
 #include "tests/calls/requests.h"
 #include "tests/io/summary_examples.h"
 #include "tests/testing/test_scene.h"
+#include "wire/options_proto.h"
 
 namespace lightfit {
 namespace {

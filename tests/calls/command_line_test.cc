@@ -7,11 +7,11 @@
 
 #include "calls/allocate_call.h"
 #include "calls/summary_call.h"
-#include "io/allocation_json.h"
 #include "tests/calls/requests.h"
 #include "tests/cli/allocations.h"
 #include "tests/cli/summaries.h"
 #include "tests/io/summary_examples.h"
+#include "wire/allocation_json.h"
 
 namespace lightfit {
 namespace {

@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "io/matrix_proto.h"
-#include "io/options_proto.h"
-#include "optimizer/evaluate.h"
+#include "optimizer/figures/evaluate.h"
 #include "optimizer/fit.h"
 #include "tests/calls/requests.h"
 #include "tests/io/summary_examples.h"
 #include "tests/testing/test_scene.h"
+#include "wire/matrix_proto.h"
+#include "wire/options_proto.h"
 
 namespace lightfit {
 namespace {

@@ -6,13 +6,13 @@
 #include <limits>
 #include <string>
 
-#include "io/options_proto.h"
-#include "io/result_json.h"
-#include "optimizer/evaluate.h"
+#include "optimizer/figures/evaluate.h"
 #include "optimizer/fit.h"
 #include "tests/calls/requests.h"
 #include "tests/io/summary_examples.h"
 #include "tests/testing/plane_readback.h"
+#include "wire/options_proto.h"
+#include "wire/result_json.h"
 
 namespace lightfit {
 namespace {

@@ -21,11 +21,11 @@
 
 #include "absl/types/span.h"
 #include "calls/call_context.h"
-#include "io/camera_file.h"
-#include "io/lights_file.h"
-#include "io/proto_json.h"
 #include "lightfit/v1/service.pb.h"
-#include "optimizer/readback.h"
+#include "optimizer/readback/readback.h"
+#include "wire/camera_proto.h"
+#include "wire/light_proto.h"
+#include "wire/proto_json.h"
 
 namespace lightfit::testing {
 

@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "io/options_proto.h"
 #include "optimizer/fit.h"
 #include "tests/calls/requests.h"
 #include "tests/io/summary_examples.h"
+#include "wire/options_proto.h"
 
 namespace lightfit {
 namespace {
@@ -135,7 +135,7 @@ TEST(SummaryCall, BadInputsAreNamed) {
       {[](Request* r) { r->mutable_summary_files(0)->pop_back(); }, "summary_files[0]: has "},
       {[&](Request* r) { r->add_summary_files(set_l2); },
        "summary_files[1]: options.metric is METRIC_L2 here and METRIC_L1_ACROSS_EDGE in what"},
-      {[](Request* r) { r->clear_map(); }, "map = 0x0, want 1 ... 1048576 texels each way"},
+      {[](Request* r) { r->clear_map(); }, "map = 0x0, want 1 ... 65536 texels each way"},
       {[](Request* r) { r->mutable_map()->set_width(1 << 30); }, "map = 1073741824x512, want"},
       {[](Request* r) { r->mutable_clip(); },
        "clip: depth_range = 0, want DEPTH_RANGE_ZERO_TO_ONE"},

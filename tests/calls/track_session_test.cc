@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "io/matrix_proto.h"
-#include "io/shot_proto.h"
-#include "optimizer/tracker.h"
+#include "optimizer/tracking/tracker.h"
 #include "tests/calls/requests.h"
 #include "tests/io/summary_examples.h"
+#include "wire/matrix_proto.h"
+#include "wire/shot_proto.h"
 
 namespace lightfit {
 namespace {

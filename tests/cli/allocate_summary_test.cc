@@ -12,11 +12,11 @@
 #include "absl/strings/str_format.h"
 #include "io/lights_file.h"
 #include "io/readback_exr.h"
-#include "optimizer/evaluate.h"
+#include "optimizer/figures/evaluate.h"
 #include "tests/cli/allocations.h"
 #include "tests/cli/examples.h"
-#include "tests/cli/process.h"
 #include "tests/cli/summaries.h"
+#include "tests/testing/process.h"
 
 namespace lightfit {
 namespace {

@@ -6,7 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "tests/cli/allocations.h"
 #include "tests/cli/examples.h"
-#include "tests/cli/process.h"
+#include "tests/testing/process.h"
 
 namespace lightfit {
 namespace {

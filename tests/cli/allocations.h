@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "io/allocation_json.h"
 #include "tests/cli/examples.h"
-#include "tests/cli/process.h"
+#include "tests/testing/process.h"
+#include "wire/allocation_json.h"
 
 namespace lightfit {
 

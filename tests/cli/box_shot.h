@@ -13,11 +13,11 @@
 #include <vector>
 
 #include "absl/strings/str_format.h"
-#include "io/lights_file.h"
-#include "io/proto_json.h"
 #include "io/readback_exr_write.h"
-#include "tests/cli/process.h"
 #include "tests/testing/frame_loop.h"
+#include "tests/testing/process.h"
+#include "wire/light_proto.h"
+#include "wire/proto_json.h"
 
 namespace lightfit {
 

@@ -6,12 +6,12 @@
 #include <cmath>
 
 #include "absl/strings/str_cat.h"
-#include "io/proto_json.h"
 #include "lightfit/v1/comparison.pb.h"
-#include "tests/cli/compare_scene.h"
 #include "tests/cli/examples.h"
-#include "tests/cli/process.h"
+#include "tests/jobs/compare/compare_scene.h"
 #include "tests/testing/matchers.h"
+#include "tests/testing/process.h"
+#include "wire/proto_json.h"
 
 namespace lightfit {
 namespace {

@@ -5,11 +5,11 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
-#include "cli/compare_json.h"
-#include "io/proto_json.h"
-#include "tests/cli/compare_scene.h"
+#include "jobs/compare/json.h"
 #include "tests/cli/examples.h"
-#include "tests/cli/process.h"
+#include "tests/jobs/compare/compare_scene.h"
+#include "tests/testing/process.h"
+#include "wire/proto_json.h"
 
 namespace lightfit {
 namespace {

@@ -7,8 +7,8 @@
 
 #include <string>
 
-#include "io/result_json.h"
-#include "tests/cli/process.h"
+#include "tests/testing/process.h"
+#include "wire/result_json.h"
 
 namespace lightfit {
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/cli/examples.h"
-#include "tests/cli/process.h"
+#include "tests/testing/process.h"
 
 namespace lightfit {
 namespace {

@@ -11,9 +11,10 @@
 #include "geometry/clip.h"
 #include "io/lights_file.h"
 #include "io/readback_exr.h"
-#include "optimizer/footprint_image.h"
+#include "optimizer/figures/footprint_image.h"
 #include "tests/cli/examples.h"
-#include "tests/cli/process.h"
+#include "tests/testing/process.h"
+#include "wire/light_proto.h"
 
 namespace lightfit {
 namespace {

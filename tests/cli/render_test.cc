@@ -5,7 +5,7 @@
 
 #include "io/lights_file.h"
 #include "tests/cli/examples.h"
-#include "tests/cli/process.h"
+#include "tests/testing/process.h"
 
 namespace lightfit {
 namespace {

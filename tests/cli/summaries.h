@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "tests/cli/examples.h"
-#include "tests/cli/process.h"
+#include "tests/testing/process.h"
 
 namespace lightfit {
 

@@ -15,8 +15,8 @@
 #include "io/summary_file.h"
 #include "optimizer/fit.h"
 #include "tests/cli/examples.h"
-#include "tests/cli/process.h"
 #include "tests/cli/summaries.h"
+#include "tests/testing/process.h"
 
 namespace lightfit {
 namespace {

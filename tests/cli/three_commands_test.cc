@@ -9,7 +9,7 @@
 
 #include "absl/strings/str_split.h"
 #include "tests/cli/examples.h"
-#include "tests/cli/process.h"
+#include "tests/testing/process.h"
 
 namespace lightfit {
 namespace {

@@ -6,14 +6,14 @@
 #include <sstream>
 #include <string>
 
-#include "tests/cli/process.h"
+#include "tests/testing/process.h"
 
 namespace lightfit {
 namespace {
 
 // How many frames it skips depends on the machine; what it says about each does not.
 TEST(FrameLoopExample, DrawsBothLightsWithMatricesOfThisFrameOrAnEarlierOne) {
-  const ProcessResult result = RunLightfit({});
+  const ProcessResult result = RunProgram("frame_loop", {});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(result.err, "");
   const std::regex expected(

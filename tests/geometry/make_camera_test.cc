@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/affine_depth.h"
 #include "geometry/camera.h"
 #include "geometry/clip.h"
 #include "tests/testing/matchers.h"

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/exact_sum.h"
 #include "geometry/convex_hull.h"
-#include "geometry/exact_sum.h"
 #include "tests/testing/random_cases.h"
 
 namespace lightfit {

@@ -2,9 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "io/matrix_proto.h"
-#include "io/proto_json.h"
 #include "tests/io/testing.h"
+#include "wire/camera_proto.h"
+#include "wire/matrix_proto.h"
+#include "wire/proto_json.h"
 
 namespace lightfit {
 namespace {

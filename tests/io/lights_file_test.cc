@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/io/testing.h"
+#include "wire/light_proto.h"
 
 namespace lightfit {
 namespace {

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "geometry/affine_depth.h"
 #include "io/lights_file.h"
 #include "tests/io/testing.h"
 

@@ -13,13 +13,15 @@
 #include <vector>
 
 #include "absl/strings/str_format.h"
+#include "geometry/affine_depth.h"
 #include "geometry/convex_hull.h"
 #include "geometry/ray_cone.h"
 #include "io/lights_file.h"
 #include "io/readback_exr.h"
+#include "optimizer/energy/summary_total.h"
 #include "optimizer/fit.h"
-#include "optimizer/receivers.h"
-#include "optimizer/summary_total.h"
+#include "optimizer/readback/surfaces.h"
+#include "tests/testing/process.h"
 
 namespace lightfit {
 namespace {
@@ -30,7 +32,7 @@ constexpr MapSize kMap = {1024, 1024};
 class ShotWalk : public ::testing::Test {
  protected:
   void SetUp() override {
-    const std::string folder = LIGHTFIT_SOURCE_DIR "/../shared/readbacks/shot_walk/";
+    const std::string folder = RepositoryPath("../shared/readbacks/shot_walk/");
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no read-backs at " << folder;
     const auto lights = ReadLightsFile(folder + "scene.json");
     ASSERT_TRUE(lights.ok()) << lights.status();

@@ -17,12 +17,12 @@
 #include "absl/strings/str_cat.h"
 #include "io/lights_file.h"
 #include "io/readback_exr.h"
-#include "io/result_json.h"
 #include "io/summary_file.h"
-#include "io/summary_proto.h"
 #include "optimizer/fit.h"
 #include "tests/io/testing.h"
 #include "tests/testing/matchers.h"
+#include "wire/result_json.h"
+#include "wire/summary_proto.h"
 
 namespace lightfit::testing {
 

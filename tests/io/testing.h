@@ -22,6 +22,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/string_view.h"
 #include "geometry/camera.h"
+#include "tests/testing/process.h"
 
 namespace lightfit::testing {
 
@@ -66,9 +67,7 @@ class TemporaryFolder {
 };
 
 // `name` relative to the root of the repository.
-inline std::string RepositoryFile(const std::string& name) {
-  return (std::filesystem::path(LIGHTFIT_SOURCE_DIR) / name).string();
-}
+inline std::string RepositoryFile(const std::string& name) { return RepositoryPath(name); }
 
 inline std::string Bytes(const std::string& path) {
   std::ifstream file(path, std::ios::binary);

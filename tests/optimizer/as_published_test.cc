@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "geometry/convex_hull.h"
-#include "optimizer/cover.h"
+#include "optimizer/figures/footprint_image.h"
 #include "optimizer/fit.h"
-#include "optimizer/footprint_image.h"
-#include "optimizer/receivers.h"
-#include "optimizer/samples.h"
+#include "optimizer/readback/cover.h"
+#include "optimizer/readback/samples.h"
+#include "optimizer/readback/surfaces.h"
 #include "tests/testing/gradient_check.h"
 #include "tests/testing/matchers.h"
 #include "tests/testing/test_scene.h"

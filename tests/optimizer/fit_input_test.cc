@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "optimizer/figures/footprint_image.h"
 #include "optimizer/fit.h"
-#include "optimizer/footprint_image.h"
 #include "tests/testing/matchers.h"
 #include "tests/testing/plane_readback.h"
 #include "tests/testing/test_scene.h"

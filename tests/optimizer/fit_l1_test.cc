@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "optimizer/axis_evaluator.h"
-#include "optimizer/axis_search.h"
+#include "optimizer/energy/l1_weights.h"
+#include "optimizer/energy/summary_total.h"
 #include "optimizer/fit.h"
-#include "optimizer/global_search.h"
-#include "optimizer/l1_weights.h"
-#include "optimizer/summary_total.h"
+#include "optimizer/search/axis_evaluator.h"
+#include "optimizer/search/axis_search.h"
+#include "optimizer/search/global_search.h"
 #include "tests/testing/matchers.h"
 #include "tests/testing/metric_of.h"
 #include "tests/testing/test_scene.h"

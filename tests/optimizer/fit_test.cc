@@ -7,7 +7,7 @@
 #include <cstring>
 #include <thread>
 
-#include "optimizer/footprint_image.h"
+#include "optimizer/figures/footprint_image.h"
 #include "tests/testing/matchers.h"
 #include "tests/testing/test_scene.h"
 

@@ -7,10 +7,10 @@
 #include <memory>
 #include <vector>
 
-#include "geometry/scratch.h"
-#include "optimizer/evaluate.h"
+#include "base/scratch.h"
+#include "optimizer/figures/evaluate.h"
 #include "optimizer/fit.h"
-#include "optimizer/tracker.h"
+#include "optimizer/tracking/tracker.h"
 #include "tests/testing/allocation_counter.h"
 #include "tests/testing/box_scene.h"
 #include "tests/testing/test_scene.h"

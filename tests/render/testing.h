@@ -17,6 +17,7 @@
 #include "render/ray_caster.h"
 #include "render/surface_image.h"
 #include "tests/testing/box_scene.h"
+#include "tests/testing/process.h"
 #include "tests/testing/random_cases.h"
 
 namespace lightfit::testing {
@@ -151,7 +152,7 @@ inline Eigen::Matrix4d MapAround(const SurfaceImage& image,
 
 // The scenes of the project's development set, beside the repository.
 inline std::string SharedScene(const std::string& name) {
-  return std::string(LIGHTFIT_SOURCE_DIR) + "/../shared/scenes/" + name + ".glb";
+  return RepositoryPath("../shared/scenes/" + name + ".glb");
 }
 
 }  // namespace lightfit::testing

@@ -10,9 +10,9 @@
 #include "calls/fit_call.h"
 #include "calls/summary_call.h"
 #include "calls/track_session.h"
-#include "io/options_proto.h"
-#include "io/summary_proto.h"
 #include "tests/server/test_server.h"
+#include "wire/options_proto.h"
+#include "wire/summary_proto.h"
 
 namespace lightfit {
 namespace {

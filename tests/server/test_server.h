@@ -14,12 +14,12 @@
 #include <utility>
 #include <vector>
 
-#include "io/options_proto.h"
 #include "lightfit/v1/service.grpc.pb.h"
 #include "server/server.h"
 #include "tests/calls/requests.h"
 #include "tests/io/summary_examples.h"
 #include "tests/testing/plane_readback.h"
+#include "wire/options_proto.h"
 
 namespace lightfit::testing {
 

@@ -17,7 +17,7 @@
 #include "absl/types/span.h"
 #include "geometry/camera.h"
 #include "geometry/light.h"
-#include "optimizer/readback.h"
+#include "optimizer/readback/readback.h"
 
 namespace lightfit {
 

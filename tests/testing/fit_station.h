@@ -10,12 +10,12 @@
 #include <optional>
 #include <vector>
 
-#include "optimizer/affine.h"
-#include "optimizer/axis_evaluator.h"
-#include "optimizer/cover.h"
-#include "optimizer/receivers.h"
-#include "optimizer/samples.h"
-#include "optimizer/summary.h"
+#include "optimizer/energy/summary.h"
+#include "optimizer/readback/cover.h"
+#include "optimizer/readback/samples.h"
+#include "optimizer/readback/surfaces.h"
+#include "optimizer/search/affine.h"
+#include "optimizer/search/axis_evaluator.h"
 #include "tests/testing/test_scene.h"
 
 namespace lightfit::testing {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "absl/types/span.h"
-#include "optimizer/async_optimizer.h"
+#include "optimizer/tracking/async_optimizer.h"
 #include "tests/testing/box_scene.h"
 
 namespace lightfit::testing {

@@ -7,11 +7,11 @@
 #include <cmath>
 
 #include "geometry/light.h"
+#include "optimizer/energy/footprint.h"
 #include "optimizer/fit_options.h"
-#include "optimizer/footprint.h"
 #include "optimizer/light_matrix.h"
-#include "optimizer/receivers.h"
-#include "optimizer/samples.h"
+#include "optimizer/readback/samples.h"
+#include "optimizer/readback/surfaces.h"
 
 namespace lightfit::testing {
 

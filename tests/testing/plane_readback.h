@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "geometry/camera.h"
-#include "optimizer/readback.h"
+#include "optimizer/readback/readback.h"
 #include "tests/testing/random_cases.h"
 
 namespace lightfit::testing {

@@ -19,7 +19,7 @@
 #include "geometry/convex_hull.h"
 #include "geometry/light.h"
 #include "geometry/ray_cone.h"
-#include "optimizer/samples.h"
+#include "optimizer/readback/samples.h"
 
 namespace lightfit::testing {
 

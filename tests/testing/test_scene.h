@@ -11,11 +11,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "geometry/affine_depth.h"
 #include "geometry/light.h"
-#include "optimizer/depth_tiles.h"
 #include "optimizer/fit_options.h"
 #include "optimizer/light_matrix.h"
-#include "optimizer/readback.h"
+#include "optimizer/readback/depth_tiles.h"
+#include "optimizer/readback/readback.h"
 #include "tests/testing/box_scene.h"
 
 namespace lightfit::testing {

@@ -1,0 +1,60 @@
+#include "base/output_file.h"
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <system_error>
+
+#include "absl/strings/str_cat.h"
+
+namespace lightfit {
+namespace {
+
+std::filesystem::path FolderOf(const std::string& path) {
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  return folder.empty() ? "." : folder;
+}
+
+}  // namespace
+
+absl::Status CheckWritable(absl::string_view flag, const std::string& path) {
+  std::error_code error;
+  const std::filesystem::path folder = FolderOf(path);
+  if (path.empty()) return absl::InvalidArgumentError(absl::StrCat(flag, " is empty, want a file"));
+  if (std::filesystem::is_directory(path, error)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(flag, " ", path, ": is a folder, want the name of a file"));
+  }
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(flag, " ", path, ": is a device or a pipe, want the name of a file"));
+  }
+  if (!std::filesystem::is_directory(folder, error)) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        flag, " ", path, ": there is no folder ", folder.string(), "; create it first"));
+  }
+  // The file is replaced by a rename, so the folder's permission counts, not the old file's.
+  if (access(folder.c_str(), W_OK | X_OK) != 0) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        flag, " ", path, ": the folder ", folder.string(), " is not writable; choose another"));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status WriteThroughTemporary(const std::string& path,
+                                   const std::function<absl::Status(const std::string&)>& write) {
+  // The process number keeps two runs with one output apart; the last rename wins, whole.
+  const std::string temporary = absl::StrCat(path, ".", getpid(), ".part");
+  absl::Status status = write(temporary);
+  std::error_code error;
+  if (status.ok()) {
+    std::filesystem::rename(temporary, path, error);
+    if (!error) return absl::OkStatus();
+    status = absl::UnknownError(
+        absl::StrCat("cannot rename ", temporary, " to ", path, ": ", error.message()));
+  }
+  std::filesystem::remove(temporary, error);
+  return status;
+}
+
+}  // namespace lightfit

@@ -1,0 +1,51 @@
+// cli/flags/allocate_flags.h
+//
+// The options of `lightfit allocate` as they stand on the command line.
+// In:   words; a wrong one is refused while parsing (exit code 1).
+// Out:  AllocateFlags.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "absl/types/optional.h"
+#include "cli/flags/fit_flags.h"
+#include "optimizer/sizing/map_sizes.h"
+#include "optimizer/sizing/tolerance.h"
+
+namespace CLI {
+class App;
+}
+
+namespace lightfit {
+
+struct AllocateFlags {
+  FitFlags fit;  // the read-back or summaries, the lights, the method, the output
+
+  // One of the two.
+  absl::optional<int64_t> budget_texels;
+  absl::optional<Tolerance> tolerance;  // image_scale is set once the read-back is known
+
+  std::map<std::string, double> weights;  // by light name
+  MapSizeRules rules;
+  absl::optional<MapSize> image;  // absent: the read-back's own pixels; not with summaries
+};
+
+// Declares every option on `app`, to be parsed into `flags`, which must stay where it is.
+void DeclareAllocateFlags(CLI::App* app, AllocateFlags* flags);
+
+// "4096x4096", or a number of texels.
+absl::StatusOr<int64_t> ParseTexels(const std::string& text);
+
+// "rms:1.0", "p99:1.5" or "worst:3".
+absl::StatusOr<Tolerance> ParseTolerance(const std::string& text);
+
+// What the words of ParseTolerance() say: "99 % of the footprints at most 1.5 pixels".
+std::string ToleranceText(const Tolerance& tolerance);
+
+// "sun=2": a name and a number above 0.
+absl::StatusOr<std::pair<std::string, double>> ParseWeight(const std::string& text);
+
+}  // namespace lightfit

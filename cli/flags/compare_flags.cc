@@ -1,0 +1,235 @@
+#include "cli/flags/compare_flags.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/match.h"
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_split.h"
+#include "jobs/compare/rows.h"
+
+namespace lightfit {
+namespace {
+
+constexpr int64_t kMaxTexels = int64_t{1} << 28;  // 16384 x 16384: two gigabytes of depth
+
+constexpr char kExamples[] =
+    "Examples:\n"
+    "  lightfit compare sponza.glb --camera 3.5,1.7,-4.2:-9,2.2,-4.4:55 --light sun=sun:1,-3,0.5 "
+    "\\\n"
+    "      --picture methods.png\n"
+    "  lightfit compare generate --camera 0,1.7,18:0,0.5,0 --random-lights 500 --csv lights.csv\n"
+    "  lightfit compare frame.exr --lights scene.json --matrix engine=engine.json\n"
+    "  lightfit compare sponza.glb --camera 3.5,1.7,-4.2:-9,2.2,-4.4:55 --light sun=sun:1,-3,0.5 "
+    "\\\n"
+    "      --camera-step 0.1,0,0,0.5\n"
+    "\n"
+    "Units: positions in world units, images in pixels, maps in texels. A read-back has no true\n"
+    "shadows to count wrong or flipped pixels by: it gives energies, footprints and, with\n"
+    "--next-readback, drift.\n"
+    "--matrix: a result of lightfit fit --json, or {\"map_from_world\": [16 numbers], \"map\":\n"
+    "{\"width\": 1024, \"height\": 1024}}, or {\"clip_from_world\": [16 numbers], \"clip\": "
+    "\"opengl\"}.";
+
+// Refuses the word while parsing when `parse` does.
+template <typename Parse, typename Target>
+void ParseInto(const char* flag, const std::string& text, const Parse& parse, Target* target) {
+  const auto value = parse(text);
+  if (!value.ok()) throw CLI::ValidationError(flag, std::string(value.status().message()));
+  *target = *value;
+}
+
+absl::StatusOr<MapSize> ParseJudgedMap(const std::string& text) {
+  absl::StatusOr<MapSize> map = ParseMapSize(text);
+  if (!map.ok()) return map;
+  if (int64_t{map->width} * map->height > kMaxTexels) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(text, ": want at most ", kMaxTexels, " texels, such as 16384x16384"));
+  }
+  return map;
+}
+
+void DeclareSizes(CLI::App* app, CompareFlags* flags) {
+  const std::string group = "Sizes";
+  app->add_option_function<std::string>(
+         "--screen",
+         [flags](const std::string& text) {
+           ParseInto("--screen", text, ParsePixelSize, &flags->screen);
+         },
+         "The image whose wrong pixels are counted, pixels [750x750]")
+      ->type_name("WIDTHxHEIGHT")
+      ->group(group);
+  app->add_option_function<std::string>(
+         "--readback",
+         [flags](const std::string& text) {
+           ParseInto("--readback", text, ParsePixelSize, &flags->readback);
+         },
+         "The read-back that is fitted from, pixels [180x180, in the screen's aspect ratio]")
+      ->type_name("WIDTHxHEIGHT")
+      ->group(group);
+  app->add_option_function<std::string>(
+         "--map",
+         [flags](const std::string& text) {
+           ParseInto("--map", text, ParseJudgedMap, &flags->map);
+         },
+         "Every shadow map, texels [400x400]")
+      ->type_name("WIDTHxHEIGHT")
+      ->group(group);
+}
+
+void DeclareMatrices(CLI::App* app, CompareFlags* flags) {
+  app->add_option_function<std::vector<std::string>>(
+         "--matrix",
+         [flags](const std::vector<std::string>& texts) {
+           for (const std::string& text : texts) {
+             MatrixFlag matrix;
+             ParseInto("--matrix", text, ParseMatrixFlag, &matrix);
+             for (const MatrixFlag& other : flags->matrices) {
+               if (other.name != matrix.name) continue;
+               throw CLI::ValidationError(
+                   "--matrix",
+                   absl::StrCat("\"", text, "\": the name is taken, want distinct names"));
+             }
+             flags->matrices.push_back(std::move(matrix));
+           }
+         },
+         "Matrices from elsewhere as a further method (may be repeated)")
+      ->type_name("NAME=FILE.json")
+      ->expected(1)
+      ->take_all()
+      ->group("Methods");
+  app->add_option("--bias-share",
+                  flags->bias.constant_share,
+                  "Constant part of the practical bias, of the receivers' range of distances from "
+                  "the light [0.0002]")
+      ->type_name("SHARE")
+      ->check(CLI::Range(0.0, 1.0))
+      ->group("Methods");
+}
+
+void DeclareCrawl(CLI::App* app, CrawlFlags* flags) {
+  const std::string group = "Crawl";
+  app->add_flag("--crawl",
+                flags->is_wanted,
+                "Measure how much shadows crawl to the next frame, where every method is set up "
+                "anew and scene and lights stand still. Alone: the camera moves forward by 1 % of "
+                "the median depth of what it sees and turns by half a degree. The options below "
+                "imply --crawl")
+      ->group(group);
+  CLI::Option* step = app->add_option_function<std::string>(
+      "--camera-step",
+      [flags](const std::string& text) {
+        flags->is_wanted = true;
+        ParseInto("--camera-step", text, ParseCameraStep, &flags->step);
+      },
+      "How the camera moves to the next frame: world units in its own directions, then turns to "
+      "the right and upwards, degrees");
+  step->type_name("FORWARD,RIGHT,UP[,YAW[,PITCH]]")->group(group);
+  app->add_option_function<int>(
+         "--next-frame",
+         [flags](int frame) {
+           flags->is_wanted = true;
+           flags->next_frame = frame;
+         },
+         "The next frame is that of the --camera scene file [of --next-readback: --frame + 1]")
+      ->type_name("N")
+      ->check(CLI::NonNegativeNumber)
+      ->excludes(step)
+      ->group(group);
+  app->add_option_function<std::string>(
+         "--next-readback",
+         [flags](const std::string& path) {
+           flags->is_wanted = true;
+           flags->next_readback_path = path;
+         },
+         "The next frame of a read-back, with the same lights")
+      ->type_name("FILE.exr")
+      ->group(group);
+}
+
+void DeclareOutput(CLI::App* app, CompareFlags* flags) {
+  const std::string group = "Output";
+  app->add_flag("--per-light", flags->per_light, "With many lights a table for each of them too")
+      ->group(group);
+  app->add_option("--csv", flags->csv_path, "Write one line for each light and method")
+      ->type_name("FILE.csv")
+      ->group(group);
+  app->add_option("--json", flags->json_path, "Write matrices and figures to this file")
+      ->type_name("FILE.json")
+      ->group(group);
+  app->add_option("--picture",
+                  flags->picture_path,
+                  "Draw the shadows of all methods for one light, wrong pixels marked")
+      ->type_name("FILE.png")
+      ->group(group);
+  app->add_option("--picture-light",
+                  flags->picture_light,
+                  "The light to draw [where focused and lightfit differ most]")
+      ->type_name("LIGHT")
+      ->group(group);
+  app->add_option_function<std::string>(
+         "--bias",
+         [flags](const std::string& text) {
+           flags->picture_bias = text == "practical" ? Bias::kPractical : Bias::kIdeal;
+         },
+         "Whose wrong pixels the picture shows: of sampling alone, or with a renderer's bias "
+         "[ideal]")
+      ->check(CLI::IsMember({"ideal", "practical"}))
+      ->type_name("ideal|practical")
+      ->group(group);
+  app->add_flag("--quiet", flags->quiet, "No table and no progress; errors and warnings only")
+      ->group(group);
+}
+
+}  // namespace
+
+bool CompareFlags::is_readback() const {
+  return absl::EndsWith(absl::AsciiStrToLower(scene.scene), ".exr");
+}
+
+void DeclareCompareFlags(CLI::App* app, CompareFlags* flags) {
+  DeclareSceneFlags(app, &flags->scene, "SCENE|READBACK.exr");
+  DeclareSizes(app, flags);
+  DeclareMatrices(app, flags);
+  DeclareCrawl(app, &flags->crawl);
+  DeclareMethodFlags(app, &flags->fit.options);
+  DeclareOutput(app, flags);
+  const std::string group = "Read-back";
+  DeclareReadbackFlags(app, group, &flags->fit);
+  DeclareCameraExrFlags(app, group, &flags->fit.camera_exr);
+  app->footer(kExamples);
+}
+
+absl::StatusOr<MatrixFlag> ParseMatrixFlag(const std::string& text) {
+  const std::pair<std::string, std::string> parts = absl::StrSplit(text, absl::MaxSplits('=', 1));
+  if (parts.first.empty() || parts.second.empty()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("\"", text, "\": want NAME=FILE such as engine=matrices.json"));
+  }
+  const std::vector<std::string> rows = RowNames({});
+  if (std::find(rows.begin(), rows.end(), parts.first) != rows.end()) {
+    return absl::InvalidArgumentError(absl::StrCat("\"",
+                                                   text,
+                                                   "\": \"",
+                                                   parts.first,
+                                                   "\" is a method already, want another name "
+                                                   "than ",
+                                                   absl::StrJoin(rows, ", ")));
+  }
+  return MatrixFlag{parts.first, parts.second};
+}
+
+PixelSize DefaultReadbackSize(PixelSize screen) {
+  constexpr double kSide = 180.0;
+  const double stretch = std::sqrt(static_cast<double>(screen.width) / screen.height);
+  return {std::max(1, static_cast<int>(std::lround(kSide * stretch))),
+          std::max(1, static_cast<int>(std::lround(kSide / stretch)))};
+}
+
+}  // namespace lightfit

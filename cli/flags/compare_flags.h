@@ -1,0 +1,72 @@
+// cli/flags/compare_flags.h
+//
+// The options of `lightfit compare` as they stand on the command line.
+// In:   words; a wrong one is refused while parsing (exit code 1).
+// Out:  CompareFlags.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/types/optional.h"
+#include "cli/flags/fit_flags.h"
+#include "cli/flags/scene_flags.h"
+#include "jobs/compare/camera_step.h"
+#include "picture/compare_choice.h"
+#include "render/judge.h"
+
+namespace CLI {
+class App;
+}
+
+namespace lightfit {
+
+// --matrix NAME=FILE.
+struct MatrixFlag {
+  std::string name, path;
+};
+
+// Where crawl is measured to.
+struct CrawlFlags {
+  bool is_wanted = false;           // --crawl, or any of the others
+  absl::optional<int> next_frame;   // of the --camera scene file
+  absl::optional<CameraStep> step;  // absent: DefaultCameraStep()
+  std::string next_readback_path;
+};
+
+struct CompareFlags {
+  SceneFlags scene;  // its positional may be a read-back
+
+  // FitFlags::options are those of "lightfit"; of the rest only what says how a read-back is to be
+  // understood.
+  FitFlags fit;
+
+  PixelSize screen = {750, 750};
+  absl::optional<PixelSize> readback;  // absent: DefaultReadbackSize()
+  MapSize map = {400, 400};
+  std::vector<MatrixFlag> matrices;
+  BiasOptions bias;  // constant_share only
+  CrawlFlags crawl;
+
+  bool per_light = false;
+  std::string csv_path;
+  std::string json_path;
+  std::string picture_path;
+  std::string picture_light;  // empty: MostTellingLight()
+  Bias picture_bias = Bias::kIdeal;
+  bool quiet = false;
+
+  bool is_readback() const;  // rather than a scene
+};
+
+// Declares every option on `app`, to be parsed into `flags`, which must stay where it is.
+void DeclareCompareFlags(CLI::App* app, CompareFlags* flags);
+
+// "engine=matrices.json". The name must not be that of a row which is there already.
+absl::StatusOr<MatrixFlag> ParseMatrixFlag(const std::string& text);
+
+// As many pixels as 180x180 in the screen's ratio of width to height.
+PixelSize DefaultReadbackSize(PixelSize screen);
+
+}  // namespace lightfit

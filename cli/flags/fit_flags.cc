@@ -1,0 +1,298 @@
+#include "cli/flags/fit_flags.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_split.h"
+#include "base/suggest.h"
+#include "cli/flags/choices.h"
+#include "geometry/map_size.h"
+
+namespace lightfit {
+namespace {
+
+constexpr char kInputGroup[] = "Input";
+constexpr char kCameraGroup[] = "Camera";
+constexpr char kMethodGroup[] = "Method";
+
+constexpr char kExamples[] =
+    "Examples:\n"
+    "  lightfit fit 0001.exr --lights scene.json --json matrices.json --picture gain.png\n"
+    "  lightfit fit 0001.exr --light sun=sun:-0.3,0.2,-1 --map 2048x1024 --clip direct3d\n"
+    "  lightfit fit 0001.exr --lights scene.json --only key --as-published\n"
+    "  lightfit fit --summary part1.summary part2.summary --json shot.json\n"
+    "\n"
+    "Units: positions and depth in world units, maps in texels, images in pixels.\n"
+    "The read-back holds a depth channel Z and one channel shadow.LIGHT per light, above 0.5 "
+    "where\n"
+    "that light is blocked; the camera comes from worldToCamera and worldToNDC in its header.";
+
+// An option whose value is one of a few words. CLI11's own transformer would also take the numbers
+// behind the words.
+template <typename Value, typename Target>
+CLI::Option* AddChoice(CLI::App* app,
+                       const std::string& flag,
+                       const Words<Value>& words,
+                       Target* target,
+                       const std::string& meaning) {
+  const auto parse = [=](const std::string& text) {
+    for (const auto& [word, value] : words) {
+      if (word == text) {
+        *target = value;
+        return;
+      }
+    }
+    const std::vector<std::string> choices = WordsOnly(words);
+    throw CLI::ValidationError(flag,
+                               absl::StrCat("there is no \"",
+                                            text,
+                                            "\", want ",
+                                            absl::StrJoin(choices, ", "),
+                                            DidYouMean(text, choices)));
+  };
+  return app->add_option_function<std::string>(flag, parse, meaning)
+      ->type_name(absl::StrJoin(WordsOnly(words), "|"));
+}
+
+void DeclareInput(CLI::App* app, FitFlags* flags) {
+  const std::string group = kInputGroup;
+  app->add_option("readback", flags->readback_path, "OpenEXR file with depth and shadow channels")
+      ->type_name("READBACK.exr");
+  app->add_option("--summary",
+                  flags->summary_paths,
+                  "Instead of a read-back: fit one map per light to the sum of these files of "
+                  "lightfit summarize")
+      ->type_name("FILE")
+      ->group(group);
+  DeclareLightFlags(app, &flags->lights, group);
+  DeclareOnlyFlag(app, group, flags);
+  DeclareReadbackFlags(app, group, flags);
+}
+
+// What `fit` asks of a read-back beside its channels.
+void CheckNeedsOfFit(const CLI::App& app, const FitFlags& flags) {
+  if (flags.summary_paths.empty()) return;
+  if (app.count("--picture") > 0) {
+    throw CLI::ValidationError("--picture",
+                               "needs the pixels of a read-back, and a summary has none; draw one "
+                               "frame with lightfit fit READBACK.exr --picture");
+  }
+  if (app.count("--as-published") > 0) {
+    throw CLI::ValidationError("--as-published",
+                               "goes through the samples one by one, and a summary has their sums "
+                               "only; --search line runs on those");
+  }
+}
+
+void DeclareMethod(CLI::App* app, FitFlags* flags) {
+  DeclareMethodFlags(app, &flags->options);
+  app->add_flag(
+         "--as-published", flags->as_published, "Chong and Gortler's Algorithm 1 to the letter")
+      ->excludes(app->get_option("--search"))
+      ->excludes(app->get_option("--affine"))
+      ->excludes(app->get_option("--metric"))
+      ->excludes(app->get_option("--cover"))
+      ->group(kMethodGroup);
+}
+
+void DeclareOutput(CLI::App* app, FitFlags* flags) {
+  const std::string group = "Output";
+  app->add_option("--json", flags->json_path, "Write the matrices and figures to this file")
+      ->type_name("FILE.json")
+      ->group(group);
+  app->add_option("--picture", flags->picture_path, "Draw before and after, per light")
+      ->type_name("FILE.png")
+      ->group(group);
+  app->add_flag("--quiet", flags->quiet, "No table and no progress; errors and warnings only")
+      ->group(group);
+}
+
+}  // namespace
+
+void DeclareOnlyFlag(CLI::App* app, const std::string& group, FitFlags* flags) {
+  app->add_option("--only", flags->only, "This light only (may be repeated)")
+      ->type_name("LIGHT")
+      ->expected(1)
+      ->take_all()
+      ->group(group);
+}
+
+void DeclareReadbackFlags(CLI::App* app, const std::string& group, FitFlags* flags) {
+  AddChoice(app,
+            "--depth-kind",
+            DepthKindWords(),
+            &flags->depth_kind,
+            "What the depth channel holds [camera-z, or as the camera file says]")
+      ->group(group);
+  app->add_option("--depth-channel", flags->depth_channel, "Name of the depth channel [Z]")
+      ->type_name("CHANNEL")
+      ->group(group);
+  app->add_option("--shadow-channel",
+                  flags->shadow_channel_format,
+                  "Name of the shadow channels [shadow.{light}]")
+      ->type_name("FORMAT")
+      ->group(group);
+  app->add_option("--shadow-bits-channel",
+                  flags->shadow_bits_channel,
+                  "UINT channel that holds all shadows, light l in bit l")
+      ->type_name("CHANNEL")
+      ->group(group);
+}
+
+void DeclareCameraFlags(CLI::App* app, const std::string& group, FitFlags* flags) {
+  app->add_option("--camera", flags->camera_path, "JSON file with the camera, or a scene file")
+      ->type_name("FILE")
+      ->group(group);
+  app->add_option("--frame", flags->frame, "Which frame of the --camera scene file, from 0 [0]")
+      ->type_name("N")
+      ->check(CLI::NonNegativeNumber)
+      ->group(group);
+  DeclareCameraExrFlags(app, group, &flags->camera_exr);
+}
+
+void DeclareCameraExrFlags(CLI::App* app, const std::string& group, CameraExrOptions* camera) {
+  app->add_option_function<std::string>(
+         "--camera-convention",
+         [camera](const std::string& words) {
+           const absl::StatusOr<CameraConvention> convention = ParseCameraConvention(words);
+           if (!convention.ok()) {
+             throw CLI::ValidationError("--camera-convention",
+                                        std::string(convention.status().message()));
+           }
+           camera->convention = *convention;
+         },
+         "Who wrote worldToCamera and worldToNDC: openexr, mantra or pbrt; words such as "
+         "column-vectors,y-up change it [openexr]")
+      ->type_name("WORDS")
+      ->group(group);
+  app->add_option("--near", camera->near, "Near clip plane, world units (NDC depth only)")
+      ->type_name("DISTANCE")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+  app->add_option("--far", camera->far, "Far clip plane, world units (NDC depth only)")
+      ->type_name("DISTANCE")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+  app->add_option(
+         "--pixel-aspect", camera->pixel_aspect, "Width over height of a pixel [as the file says]")
+      ->type_name("RATIO")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+}
+
+void DeclareMethodFlags(CLI::App* app, FitOptions* options) {
+  AddChoice(
+      app, "--search", SearchWords(), &options->search, "How the projective axis is found [global]")
+      ->group(kMethodGroup);
+  AddChoice(app,
+            "--affine",
+            AffineWords(),
+            &options->affine,
+            "How the map is laid around what it covers [parallelogram]")
+      ->group(kMethodGroup);
+  DeclareSummingFlags(app, options);
+  app->add_option("--margin-percent",
+                  options->margin_percent,
+                  "The map reaches this much beyond what it covers on every side [1]")
+      ->type_name("PERCENT")
+      ->check(CLI::Range(0.0, 100.0))
+      ->group(kMethodGroup);
+  app->add_option("--min-samples",
+                  options->samples.min_samples,
+                  "Fewer usable shadow-edge pixels than this are not fitted [8]")
+      ->type_name("COUNT")
+      ->check(CLI::PositiveNumber)
+      ->group(kMethodGroup);
+}
+
+void DeclareSummingFlags(CLI::App* app, FitOptions* options) {
+  AddChoice(app,
+            "--metric",
+            MetricWords(),
+            &options->metric,
+            "What is summed over the shadow edges; -edge: across the edge only [l1-edge]")
+      ->group(kMethodGroup);
+  AddChoice(app,
+            "--cover",
+            CoverWords(),
+            &options->cover,
+            "What the map has room for: shadowed surfaces, or all receivers in view; look-ups "
+            "outside find light [shadowed]")
+      ->group(kMethodGroup);
+}
+
+void DeclareMapFlags(CLI::App* app, const std::string& group, FitFlags* flags) {
+  app->add_option_function<std::string>(
+         "--map",
+         [flags](const std::string& text) {
+           const absl::StatusOr<MapSize> map = ParseMapSize(text);
+           if (!map.ok()) throw CLI::ValidationError("--map", std::string(map.status().message()));
+           flags->map = *map;
+         },
+         "Size of the shadow map in texels [1024x1024]")
+      ->type_name("WIDTHxHEIGHT")
+      ->group(group);
+  AddChoice(app,
+            "--clip",
+            ClipWords(),
+            &flags->clip,
+            "Clip space of clipFromWorld in the JSON file [vulkan]")
+      ->group(group);
+}
+
+void DeclareFitFlags(CLI::App* app, FitFlags* flags) {
+  DeclareInput(app, flags);
+  DeclareCameraFlags(app, kCameraGroup, flags);
+  DeclareMapFlags(app, "Map", flags);
+  DeclareMethod(app, flags);
+  DeclareOutput(app, flags);
+  app->footer(kExamples);
+  app->callback([app, flags] {
+    flags->has_metric = app->count("--metric") > 0;
+    flags->has_cover = app->count("--cover") > 0;
+    CheckSource(*app, *flags, {kInputGroup, kCameraGroup});
+    CheckNeedsOfFit(*app, *flags);
+  });
+}
+
+void CheckSource(const CLI::App& app,
+                 const FitFlags& flags,
+                 const std::vector<std::string>& readback_groups) {
+  if (flags.readback_path.empty() == flags.summary_paths.empty()) {
+    throw CLI::ValidationError(app.get_name(),
+                               "want a read-back or --summary, one of the two; lightfit summarize "
+                               "adds a read-back to summaries");
+  }
+  if (flags.summary_paths.empty()) return;
+  for (const CLI::Option* option : app.get_options()) {
+    const std::string name = option->get_name();
+    if (option->count() == 0 || name == "--summary" || name == "--only") continue;
+    if (std::find(readback_groups.begin(), readback_groups.end(), option->get_group()) ==
+        readback_groups.end()) {
+      continue;
+    }
+    throw CLI::ValidationError(name,
+                               "is about a read-back; leave it out with --summary, whose files "
+                               "hold the lights and what their samples came to");
+  }
+}
+
+absl::StatusOr<MapSize> ParseMapSize(const std::string& text) {
+  const std::vector<std::string> sides = absl::StrSplit(text, 'x');
+  MapSize map;
+  if (sides.size() != 2 || !absl::SimpleAtoi(sides[0], &map.width) ||
+      !absl::SimpleAtoi(sides[1], &map.height)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("\"", text, "\" is no size, want WIDTHxHEIGHT in texels such as 1024x1024"));
+  }
+  if (std::min(map.width, map.height) < 1 || std::max(map.width, map.height) > kMaxMapSide) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(text, ": want 1 to ", kMaxMapSide, " texels along each side"));
+  }
+  return map;
+}
+
+}  // namespace lightfit

@@ -1,0 +1,75 @@
+// cli/flags/fit_flags.h
+//
+// The options of `lightfit fit` as they stand on the command line.
+// In:   words; a wrong one is refused while parsing (exit code 1).
+// Out:  FitFlags.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/types/optional.h"
+#include "cli/flags/light_flags.h"
+#include "geometry/clip.h"
+#include "io/camera_exr.h"
+#include "optimizer/fit_options.h"
+
+namespace CLI {
+class App;
+}
+
+namespace lightfit {
+
+struct FitFlags {
+  std::string readback_path;               // or:
+  std::vector<std::string> summary_paths;  // --summary, which has lights and samples in it
+
+  LightFlags lights;
+  std::vector<std::string> only;  // names; empty: all
+
+  MapSize map = {1024, 1024};
+  FitOptions options;
+  bool has_metric = false, has_cover = false;  // whether they were given
+  bool as_published = false;
+  ClipConvention clip = ClipConvention::Vulkan();
+
+  absl::optional<DepthKind> depth_kind;  // absent: the camera file's, or kCameraZ
+  std::string depth_channel;
+  std::string shadow_channel_format;
+  std::string shadow_bits_channel;
+
+  std::string camera_path;
+  int frame = 0;
+  CameraExrOptions camera_exr;
+
+  std::string json_path;
+  std::string picture_path;
+  bool quiet = false;
+};
+
+// Declares every option on `app`, to be parsed into `flags`, which must stay where it is; those
+// that do not go together are refused.
+void DeclareFitFlags(CLI::App* app, FitFlags* flags);
+
+// Parts of it, for verbs that fit or read a read-back too: which of the lights; what the channels
+// of the read-back mean; its camera; what the camera's attributes in its header mean; how it is
+// fitted, and of that what its samples are summed by; the map's size and clip space.
+void DeclareOnlyFlag(CLI::App* app, const std::string& group, FitFlags* flags);
+void DeclareReadbackFlags(CLI::App* app, const std::string& group, FitFlags* flags);
+void DeclareCameraFlags(CLI::App* app, const std::string& group, FitFlags* flags);
+void DeclareCameraExrFlags(CLI::App* app, const std::string& group, CameraExrOptions* camera);
+void DeclareMethodFlags(CLI::App* app, FitOptions* options);
+void DeclareSummingFlags(CLI::App* app, FitOptions* options);
+void DeclareMapFlags(CLI::App* app, const std::string& group, FitFlags* flags);
+
+// For verbs that take a read-back or summaries: throws CLI::ValidationError unless it is one of the
+// two, and with summaries no option of the groups that are about a read-back.
+void CheckSource(const CLI::App& app,
+                 const FitFlags& flags,
+                 const std::vector<std::string>& readback_groups);
+
+// "1024x512"; both at least 1 and at most 65536.
+absl::StatusOr<MapSize> ParseMapSize(const std::string& text);
+
+}  // namespace lightfit

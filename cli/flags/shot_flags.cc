@@ -1,0 +1,180 @@
+#include "cli/flags/shot_flags.h"
+
+#include <CLI/CLI.hpp>
+#include <utility>
+
+#include "base/parallel.h"
+#include "cli/flags/fit_inputs.h"
+#include "io/camera_file.h"
+#include "jobs/fit_comparison.h"
+
+namespace lightfit {
+namespace {
+
+constexpr char kExamples[] =
+    "Examples:\n"
+    "  lightfit shot readbacks/walk --lights scene.json\n"
+    "  lightfit shot readbacks/walk --lights scene.json --tracked --stability 0.8 -o walk_stable\n"
+    "  lightfit shot frames.txt --lights scene.json --per-shot --map 2048x2048 --clip opengl\n"
+    "\n"
+    "Writes into the output folder:\n"
+    "  per-frame/FRAME.json  every frame its own best matrix: finest, and it crawls\n"
+    "  tracked/FRAME.json    a matrix is kept while it is good enough, or moved by whole texels\n"
+    "  per-shot/FRAME.json   one matrix per light for the whole shot: it never crawls;\n"
+    "  per-shot.json         ... the same matrix once\n"
+    "  summaries/            what per-shot was fitted to, for lightfit fit --summary\n"
+    "  shot.csv, shot.png    energy, footprint and crawl of every frame\n"
+    "\n"
+    "A run that was stopped goes on where it was: a frame whose file, lights and options are the\n"
+    "same is not computed again, and results are the same to the last byte. A frame that cannot\n"
+    "be used is named and the others go on.\n"
+    "Energy ratios need --per-frame too. Units: positions in world units, maps in texels,\n"
+    "footprints and crawl in read-back pixels.";
+
+void DeclareModes(CLI::App* app, ShotFlags* flags) {
+  const std::string group = "Modes, all three unless some are named";
+  app->add_flag("--per-frame", flags->per_frame, "Every frame has its own best matrix")
+      ->group(group);
+  app->add_flag("--tracked",
+                flags->tracked,
+                "A matrix is kept from frame to frame while it is good enough")
+      ->group(group);
+  app->add_flag("--per-shot", flags->per_shot, "One matrix per light for all frames")->group(group);
+}
+
+void DeclareTracker(CLI::App* app, ShotFlags* flags) {
+  const std::string group = "Tracked";
+  app->add_option("--stability",
+                  flags->stability,
+                  "0: the tightest map in every frame; 1: a map stays as long as it is valid [0.5]")
+      ->type_name("0...1")
+      ->check(CLI::Range(0.0, 1.0))
+      ->group(group);
+  app->add_option("--replace-below",
+                  flags->replace_below,
+                  "A map is replaced when the median squared footprint falls below this share of "
+                  "what it is with the one that is kept [by --stability]")
+      ->type_name("SHARE")
+      ->check(CLI::NonNegativeNumber)
+      ->group(group);
+  app->add_option("--update-every",
+                  flags->update_every_frames,
+                  "Look for a better map in every n-th frame alone [by --stability]")
+      ->type_name("FRAMES")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+  app->add_option("--cover-margin-percent",
+                  flags->cover_margin_percent,
+                  "A new map makes this much room on every side for what comes into view, on top "
+                  "of --margin-percent [by --stability]")
+      ->type_name("PERCENT")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->group(group);
+}
+
+void DeclareOutput(CLI::App* app, ShotFlags* flags) {
+  const std::string group = "Output";
+  app->add_option("-o,--output",
+                  flags->output,
+                  "Folder for results, made where it is not there [SHOT_lightfit in the current "
+                  "folder]")
+      ->type_name("FOLDER")
+      ->group(group);
+  app->add_flag("--force", flags->force, "Compute again what is there already")->group(group);
+  app->add_option("--threads", flags->num_threads, "At most this many [one per processor]")
+      ->type_name("COUNT")
+      ->check(CLI::Range(1, 1024))
+      ->group(group);
+  app->add_flag("--quiet", flags->fit.quiet, "No table and no progress; errors and warnings only")
+      ->group(group);
+}
+
+// Whether --camera is a file of one camera, which is then that of all frames: it stands still.
+bool HasOneCamera(const FitFlags& flags) {
+  if (flags.camera_path.empty()) return false;
+  return ReadCameraFile(flags.camera_path, 0).ok() && !ReadCameraFile(flags.camera_path, 1).ok();
+}
+
+}  // namespace
+
+void DeclareShotFlags(CLI::App* app, ShotFlags* flags) {
+  const std::string input = "Input";
+  app->add_option("frames",
+                  flags->inputs,
+                  "A folder of read-backs (its *.exr), a text file with one path per line, or EXR "
+                  "files in order")
+      ->required()
+      ->type_name("FOLDER|LIST|READBACK.exr");
+  DeclareLightFlags(app, &flags->fit.lights, input);
+  DeclareOnlyFlag(app, input, &flags->fit);
+  DeclareReadbackFlags(app, input, &flags->fit);
+  DeclareCameraFlags(
+      app, "Camera; --frame is that of the first read-back, one camera is for all", &flags->fit);
+  DeclareMapFlags(app, "Map", &flags->fit);
+  DeclareMethodFlags(app, &flags->fit.options);
+  app->add_flag("--as-published",
+                flags->fit.as_published,
+                "Chong and Gortler's Algorithm 1 and their rule of when to keep an axis")
+      ->excludes(app->get_option("--search"))
+      ->excludes(app->get_option("--affine"))
+      ->excludes(app->get_option("--metric"))
+      ->excludes(app->get_option("--cover"))
+      ->group("Method");
+  DeclareModes(app, flags);
+  DeclareTracker(app, flags);
+  app->get_option("--as-published")->excludes(app->get_option("--stability"));
+  app->add_option("--rounds",
+                  flags->rounds,
+                  "Times that the whole shot is read again to weigh samples in its own map (l1 "
+                  "metrics) [2]")
+      ->type_name("COUNT")
+      ->check(CLI::Range(0, 100))
+      ->group("Per shot");
+  DeclareOutput(app, flags);
+  app->footer(kExamples);
+}
+
+TrackerOptions TrackerOptionsOf(const ShotFlags& flags) {
+  const bool as_published = flags.fit.as_published;
+  TrackerOptions options =
+      as_published ? TrackerOptions::AsPublished() : TrackerOptions::ForStability(flags.stability);
+  options.fit = as_published ? PublishedOptions(flags.fit.options) : flags.fit.options;
+  options.replace_below = flags.replace_below.value_or(options.replace_below);
+  options.update_every_frames = flags.update_every_frames.value_or(options.update_every_frames);
+  options.cover_margin_percent = flags.cover_margin_percent.value_or(options.cover_margin_percent);
+  return options;
+}
+
+absl::StatusOr<ShotJob> MakeShotJob(const ShotFlags& flags) {
+  absl::StatusOr<FrameList> list = ListFrames(flags.inputs);
+  if (!list.ok()) return list.status();
+  absl::StatusOr<std::vector<Light>> lights = ReadFitLights(flags.fit);
+  if (!lights.ok()) return lights.status();
+
+  ShotJob job;
+  job.name = list->shot;
+  job.frames = std::move(list->frames);
+  job.lights = *std::move(lights);
+  const bool all = !flags.per_frame && !flags.tracked && !flags.per_shot;
+  job.modes = {all || flags.per_frame, all || flags.tracked, all || flags.per_shot};
+  job.map = flags.fit.map;
+  job.clip = flags.fit.clip;
+  job.tracker = TrackerOptionsOf(flags);
+  job.rounds = flags.rounds;
+  job.folder = flags.output.empty() ? job.name + "_lightfit" : flags.output;
+  job.force = flags.force;
+  job.num_threads = flags.num_threads > 0 ? flags.num_threads : NumProcessors();
+  job.quiet = flags.fit.quiet;
+
+  FitFlags frame_flags = flags.fit;
+  const int frames_per_step = HasOneCamera(flags.fit) ? 0 : 1;
+  for (ShotFrame& frame : job.frames) {
+    frame.exr = ReadbackOptionsOf(frame_flags);
+    frame_flags.frame += frames_per_step;
+  }
+  // A camera file without even the first is a mistake of the command line.
+  if (!job.frames.front().exr.ok()) return job.frames.front().exr.status();
+  return job;
+}
+
+}  // namespace lightfit

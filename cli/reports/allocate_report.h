@@ -1,0 +1,19 @@
+// cli/reports/allocate_report.h
+//
+// What `lightfit allocate` prints: a table and what its numbers mean.
+#pragma once
+
+#include <string>
+
+#include "wire/allocation_json.h"
+
+namespace lightfit {
+
+// `source`: what was read, in one line. `image_scale`: pixels of the final image per pixel of the
+// read-back. Fits without statistics, FitOptions::compute_statistics, are those of summaries. Ends
+// in a newline.
+std::string AllocationText(const AllocationReport& report,
+                           const std::string& source,
+                           double image_scale);
+
+}  // namespace lightfit

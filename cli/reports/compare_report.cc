@@ -1,0 +1,295 @@
+#include "cli/reports/compare_report.h"
+
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "base/csv.h"
+#include "base/number.h"
+#include "base/table.h"
+
+namespace lightfit {
+namespace {
+
+constexpr char kPixelLegend[] =
+    "\nWrong pixels: where the shadow map says other than the truth. Ideal bias: sampling error "
+    "alone;\n"
+    "practical: with the bias of a renderer. x lightfit: how many times as many as lightfit.\n"
+    "Outside: wrong pixels that lie outside the map.\n";
+constexpr char kFigureLegend[] =
+    "Foretold: wrong pixels that the read-back alone lets expect, of all pixels of the image.\n"
+    "Energy: Chong and Gortler's, squared footprints summed over the read-back's shadow-edge "
+    "pixels;\n"
+    "lower is better. It is what as-published and line minimise, whatever lightfit does.\n"
+    "Footprint: how far one texel reaches on the screen, in read-back pixels; below 1 is finer.\n";
+constexpr char kCrawlLegend[] =
+    "Crawl, to the next frame: how far points of the scene move within their texels, root mean "
+    "square,\n"
+    "0 (they stay) to 0.41 (drawn anew); and what that is across shadow edges, read-back pixels.\n";
+constexpr char kFlipLegend[] =
+    "Flips: pixels seen in both frames whose shadow changes though nothing moved, ideal bias, % of "
+    "the\n"
+    "judged.\n";
+constexpr char kTotalLegend[] =
+    "Totals count the lights for which both the method and lightfit have a matrix. Ratio: of total "
+    "to\n"
+    "lightfit's. Mean: geometric mean over the lights of (wrong + 1) / (wrong of lightfit + 1), "
+    "and "
+    "of\n"
+    "energy / energy of lightfit. Better: lights with fewer wrong pixels than lightfit. Failed: "
+    "lights\n"
+    "without a matrix of the method.\n";
+
+std::string RatioText(const absl::optional<double>& ratio) {
+  return ratio.has_value() ? absl::StrCat(FigureText(*ratio), "x") : "-";
+}
+
+// What rows have to say, the same words once for all of them.
+class Notes {
+ public:
+  void Add(const std::string& name, const std::string& words) {
+    for (auto& [names, known_words] : notes_) {
+      if (known_words != words) continue;
+      absl::StrAppend(&names, ", ", name);
+      return;
+    }
+    notes_.emplace_back(name, words);
+  }
+
+  std::string Text() const {
+    std::string text = notes_.empty() ? "" : "\n";
+    for (const auto& [names, words] : notes_) absl::StrAppend(&text, names, ": ", words, "\n");
+    return text;
+  }
+
+ private:
+  std::vector<std::pair<std::string, std::string>> notes_;
+};
+
+void AddCrawlColumns(bool has_truth, Table* table) {
+  table->AddColumn("crawl", "texels");
+  table->AddColumn("crawl", "pixels");
+  if (has_truth) table->AddColumn("crawl", "% flips");
+}
+
+void AppendCrawlCells(const absl::optional<MapCrawl>& crawl,
+                      bool has_truth,
+                      std::vector<std::string>* cells) {
+  const bool is_known = crawl.has_value();
+  cells->push_back(is_known && crawl->points.num_points > 0
+                       ? FigureText(crawl->points.phase_drift_texels)
+                       : "-");
+  cells->push_back(is_known && crawl->points.num_edge_points > 0
+                       ? FigureText(crawl->points.edge_crawl_px)
+                       : "-");
+  if (!has_truth) return;
+  const absl::optional<double> flips = is_known ? IdealFlipShare(*crawl) : absl::nullopt;
+  cells->push_back(flips.has_value() ? PercentText(*flips) : "-");
+}
+
+// "sun: 262266 pixels lit ...", the table, the notes.
+std::string LightText(const LightComparison& light, bool has_truth, bool has_crawl) {
+  Table table;
+  table.AddColumn("", "method");
+  if (has_truth) {
+    table.AddColumn("wrong pixels", "ideal");
+    table.AddColumn("wrong pixels", "practical");
+    table.AddColumn("x lightfit", "ideal");
+    table.AddColumn("x lightfit", "practical");
+    table.AddColumn("pixels", "outside");
+  }
+  table.AddColumn("foretold", "% wrong");
+  table.AddColumn("energy", "sum");
+  table.AddColumn("energy", "x lightfit");
+  table.AddColumn("footprint", "rms");
+  table.AddColumn("footprint", "worst");
+  if (has_crawl) AddCrawlColumns(has_truth, &table);
+  Notes notes;
+  for (const ComparedMap& map : light.maps) {
+    if (!map.status.ok()) {
+      table.AddRow({map.name, "no matrix, see below"});
+      notes.Add(map.name, std::string(map.status.message()));
+      continue;
+    }
+    if (!map.note.empty()) notes.Add(map.name, map.note);
+    std::vector<std::string> cells = {map.name};
+    if (has_truth) {
+      cells.push_back(absl::StrCat(map.wrong->ideal));
+      cells.push_back(absl::StrCat(map.wrong->practical));
+      cells.push_back(RatioText(WrongRatio(map, light.lightfit(), &WrongPixels::ideal)));
+      cells.push_back(RatioText(WrongRatio(map, light.lightfit(), &WrongPixels::practical)));
+      cells.push_back(absl::StrCat(map.wrong->outside));
+    }
+    cells.push_back(map.foretold.has_value() ? PercentText(*map.foretold) : "-");
+    const bool measured = map.figures.has_value();
+    cells.push_back(measured ? FigureText(map.figures->energy) : "-");
+    cells.push_back(RatioText(EnergyRatio(map, light.lightfit())));
+    cells.push_back(measured ? FigureText(map.figures->footprint.rms) : "-");
+    cells.push_back(measured ? FigureText(map.figures->footprint.worst) : "-");
+    if (has_crawl) AppendCrawlCells(map.crawl, has_truth, &cells);
+    table.AddRow(std::move(cells));
+  }
+  std::string title = absl::StrCat(light.light.name, ": ");
+  if (has_truth) {
+    absl::StrAppendFormat(&title,
+                          "%d pixels lit, %d in shadow, %d turned away; ",
+                          light.lighting.lit,
+                          light.lighting.shadowed,
+                          light.lighting.facing_away);
+  }
+  absl::StrAppendFormat(&title, "%d shadow-edge pixels used\n\n", light.samples.used);
+  return absl::StrCat(title, table.Text(), notes.Text());
+}
+
+void AppendPixelCells(const absl::optional<MethodTotals::Pixels>& pixels,
+                      std::vector<std::string>* cells) {
+  if (!pixels.has_value()) return cells->insert(cells->end(), 4, "-"), void();
+  cells->push_back(absl::StrCat(pixels->total));
+  cells->push_back(RatioText(pixels->ratio));
+  cells->push_back(RatioText(pixels->mean_ratio));
+  cells->push_back(absl::StrCat(pixels->num_wins));
+}
+
+std::string TotalsText(absl::Span<const LightComparison> lights, bool has_truth, bool has_crawl) {
+  Table table;
+  table.AddColumn("", "method");
+  if (has_truth) {
+    for (const char* bias : {"wrong pixels, ideal bias", "wrong pixels, practical bias"}) {
+      for (const char* name : {"total", "ratio", "mean", "better"}) {
+        table.AddColumn(bias, name);
+      }
+    }
+  }
+  table.AddColumn("energy", "mean");
+  if (has_crawl) AddCrawlColumns(has_truth, &table);
+  table.AddColumn("lights", "counted");
+  table.AddColumn("lights", "failed");
+  for (const MethodTotals& totals : TotalsOf(lights)) {
+    std::vector<std::string> cells = {totals.name};
+    if (has_truth) {
+      AppendPixelCells(totals.ideal, &cells);
+      AppendPixelCells(totals.practical, &cells);
+    }
+    cells.push_back(RatioText(totals.mean_energy_ratio));
+    if (has_crawl) AppendCrawlCells(totals.crawl, has_truth, &cells);
+    cells.push_back(absl::StrCat(totals.num_lights));
+    cells.push_back(absl::StrCat(totals.num_failed));
+    table.AddRow(std::move(cells));
+  }
+  return absl::StrCat(lights.size(), " lights\n\n", table.Text());
+}
+
+void AppendCsvCrawl(const absl::optional<MapCrawl>& crawl, std::string* csv) {
+  if (crawl.has_value()) {
+    absl::StrAppend(csv,
+                    CsvNumber(crawl->points.phase_drift_texels),
+                    ",",
+                    CsvNumber(crawl->points.moved_share),
+                    ",",
+                    CsvNumber(crawl->points.edge_crawl_px),
+                    ",");
+  } else {
+    absl::StrAppend(csv, ",,,");
+  }
+  if (crawl.has_value() && crawl->flicker.has_value()) {
+    const Flicker& flicker = *crawl->flicker;
+    absl::StrAppend(csv, flicker.judged, ",", flicker.flips_ideal, ",", flicker.flips_practical);
+    absl::StrAppend(csv, ",");
+  } else {
+    absl::StrAppend(csv, ",,,");
+  }
+}
+
+void AppendCsvRow(const LightComparison& light, const ComparedMap& map, std::string* csv) {
+  const bool is_point = light.light.kind == Light::Kind::kPoint;
+  const Eigen::Vector3d& where = is_point ? light.light.position : light.light.direction;
+  absl::StrAppend(csv, CsvField(light.light.name), is_point ? ",point," : ",sun,");
+  for (const double value : where) absl::StrAppend(csv, CsvNumber(value), ",");
+  absl::StrAppend(csv, CsvField(map.name), map.status.ok() ? ",ok," : ",failed,");
+  if (map.wrong.has_value()) {
+    absl::StrAppend(csv,
+                    map.wrong->ideal,
+                    ",",
+                    map.wrong->practical,
+                    ",",
+                    CsvNumber(map.wrong->practical_weighted),
+                    ",",
+                    map.wrong->outside,
+                    ",");
+  } else {
+    absl::StrAppend(csv, ",,,,");
+  }
+  const ComparedMap& lightfit = light.lightfit();
+  absl::StrAppend(csv, CsvNumber(WrongRatio(map, lightfit, &WrongPixels::ideal)), ",");
+  absl::StrAppend(csv, CsvNumber(WrongRatio(map, lightfit, &WrongPixels::practical)), ",");
+  if (map.figures.has_value()) {
+    const FootprintStatistics& footprint = map.figures->footprint;
+    absl::StrAppend(csv,
+                    CsvNumber(map.figures->energy),
+                    ",",
+                    CsvNumber(EnergyRatio(map, lightfit)),
+                    ",",
+                    CsvNumber(footprint.rms),
+                    ",",
+                    CsvNumber(footprint.worst),
+                    ",");
+  } else {
+    absl::StrAppend(csv, ",,,,");
+  }
+  absl::StrAppend(csv, CsvNumber(map.foretold), ",");
+  AppendCsvCrawl(map.crawl, csv);
+  absl::StrAppend(csv, light.samples.used, ",", light.lighting.lit, ",", light.lighting.shadowed);
+  absl::StrAppend(
+      csv, ",", CsvField(map.status.ok() ? map.note : std::string(map.status.message())), "\n");
+}
+
+}  // namespace
+
+std::string CompareReportText(const CompareHeading& heading,
+                              absl::Span<const LightComparison> lights,
+                              bool per_light) {
+  const bool has_truth = heading.screen_width > 0;
+  std::string text = absl::StrCat(heading.source, ": ");
+  if (has_truth) {
+    absl::StrAppendFormat(
+        &text, "screen %d x %d pixels, ", heading.screen_width, heading.screen_height);
+  }
+  absl::StrAppendFormat(&text,
+                        "read-back %d x %d pixels; map %d x %d texels\nlightfit: %s\n",
+                        heading.readback_width,
+                        heading.readback_height,
+                        heading.map.width,
+                        heading.map.height,
+                        heading.fit);
+  const bool has_crawl = !heading.next.empty();
+  if (has_crawl) absl::StrAppend(&text, "crawl: to the next frame, ", heading.next, "\n");
+  const bool totals = lights.size() != 1;
+  if (!totals || per_light) {
+    for (const LightComparison& light : lights) {
+      absl::StrAppend(&text, "\n", LightText(light, has_truth, has_crawl));
+    }
+  }
+  if (totals) absl::StrAppend(&text, "\n", TotalsText(lights, has_truth, has_crawl));
+  if (has_truth)
+    absl::StrAppend(&text, kPixelLegend);
+  else
+    absl::StrAppend(&text, "\nA read-back alone has no truth to count wrong pixels by.\n");
+  absl::StrAppend(&text, kFigureLegend);
+  if (has_crawl) absl::StrAppend(&text, kCrawlLegend, has_truth ? kFlipLegend : "");
+  if (totals) absl::StrAppend(&text, kTotalLegend);
+  return text;
+}
+
+std::string CompareCsv(absl::Span<const LightComparison> lights) {
+  std::string csv =
+      "light,kind,x,y,z,method,status,wrong_ideal,wrong_practical,wrong_practical_weighted,"
+      "wrong_outside,ratio_ideal,ratio_practical,energy,energy_ratio,footprint_rms,"
+      "footprint_worst,foretold_share,crawl_texels,crawl_moved_share,crawl_edge_px,"
+      "flips_judged,flips_ideal,flips_practical,samples,pixels_lit,pixels_shadowed,note\n";
+  for (const LightComparison& light : lights) {
+    for (const ComparedMap& map : light.maps) AppendCsvRow(light, map, &csv);
+  }
+  return csv;
+}
+
+}  // namespace lightfit

@@ -1,0 +1,33 @@
+// cli/reports/compare_report.h
+//
+// A comparison in words and figures: for the terminal, and as comma-separated values.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "absl/types/span.h"
+#include "jobs/compare/rows.h"
+#include "jobs/compare/totals.h"
+
+namespace lightfit {
+
+// What is above the tables.
+struct CompareHeading {
+  std::string source;                       // the scene or the read-back
+  int screen_width = 0, screen_height = 0;  // 0: only a read-back is known
+  int readback_width = 0, readback_height = 0;
+  MapSize map;
+  std::string fit;   // of the row "lightfit", see MethodText()
+  std::string next;  // the frame that crawl is measured to; empty: none is
+};
+
+// One light: a table of it. More: one table over all lights, after one of each if `per_light`.
+std::string CompareReportText(const CompareHeading& heading,
+                              absl::Span<const LightComparison> lights,
+                              bool per_light);
+
+// A line of names, then one line for each light and method. Empty fields where there is no figure.
+std::string CompareCsv(absl::Span<const LightComparison> lights);
+
+}  // namespace lightfit

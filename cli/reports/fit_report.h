@@ -1,0 +1,26 @@
+// cli/reports/fit_report.h
+//
+// What `lightfit fit` prints: two tables and what their numbers mean.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "jobs/fit_comparison.h"
+
+namespace lightfit {
+
+// `source` names the read-back. Ends in a newline.
+std::string FitReportText(const std::string& source,
+                          const Readback& readback,
+                          MapSize map,
+                          const FitOptions& options,
+                          const std::vector<Comparison>& comparisons);
+
+// "global search, parallelogram, l2 metric": the choices in the command line's words.
+std::string MethodText(const FitOptions& options);
+
+// "global search, l1-edge": as much of it as fits over a picture.
+std::string ShortMethodText(const FitOptions& options);
+
+}  // namespace lightfit

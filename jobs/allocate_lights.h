@@ -1,0 +1,52 @@
+// jobs/allocate_lights.h
+//
+// Sizes and matrices of the maps of several lights, for the service and for the command line.
+// In:   lights with a read-back or with summaries, a budget of texels or a tolerance.
+// Out:  AllocationReport: every light's fit at the size found for it, beside its yardsticks.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/types/optional.h"
+#include "optimizer/readback/readback.h"
+#include "wire/allocation_json.h"
+#include "wire/summary_set.h"
+
+namespace lightfit {
+
+struct AllocationTask {
+  std::vector<Light> lights;
+  FitOptions options;  // of summaries: OptionsForSummaries()
+
+  // One of the two; element l of theirs belongs to lights[l].
+  absl::optional<Readback> readback;
+  absl::optional<SummarySet> summaries;
+
+  // With a read-back: ok, or why a light has no shadow there.
+  std::vector<absl::Status> light_status;
+
+  // One of the two.
+  absl::optional<int64_t> budget_texels;
+  absl::optional<Tolerance> tolerance;
+
+  std::vector<double> weights;  // with a budget; element l belongs to lights[l]
+  MapSizeRules rules;
+};
+
+// Called as each step begins, with words such as "fitting sun". A budget takes two steps for each
+// light, a tolerance one.
+using StepCallback = std::function<void(const std::string& what)>;
+
+// Source and clip of the report are the caller's to fill in. A light without a map has its own
+// status. Errors are those of AllocateBudget().
+absl::StatusOr<AllocationReport> AllocateLights(const AllocationTask& task,
+                                                const StepCallback& begin_step);
+
+// As AllocationToProto(), and of summaries without what only a read-back can tell.
+v1::Allocation AllocationMessage(const AllocationReport& report, bool of_summaries);
+
+}  // namespace lightfit

@@ -1,0 +1,101 @@
+#include "jobs/compare/crawl.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace lightfit {
+namespace {
+
+// The root mean square of two sets together.
+double PooledRms(double a, int64_t count_a, double b, int64_t count_b) {
+  const auto weight_a = static_cast<double>(count_a), weight_b = static_cast<double>(count_b);
+  if (count_a + count_b == 0) return 0.0;
+  return std::sqrt((weight_a * a * a + weight_b * b * b) / (weight_a + weight_b));
+}
+
+void Pool(const MapCrawl& crawl, MapCrawl* sum) {
+  Crawl& points = sum->points;
+  const Crawl& more = crawl.points;
+  points.phase_drift_texels = PooledRms(
+      points.phase_drift_texels, points.num_points, more.phase_drift_texels, more.num_points);
+  points.edge_crawl_px = PooledRms(
+      points.edge_crawl_px, points.num_edge_points, more.edge_crawl_px, more.num_edge_points);
+  const auto num_points = static_cast<double>(points.num_points + more.num_points);
+  if (num_points > 0.0) {
+    points.moved_share = (points.moved_share * static_cast<double>(points.num_points) +
+                          more.moved_share * static_cast<double>(more.num_points)) /
+                         num_points;
+  }
+  points.num_points += more.num_points;
+  points.num_edge_points += more.num_edge_points;
+  if (!crawl.flicker.has_value()) return;
+  if (!sum->flicker.has_value()) sum->flicker = Flicker();
+  sum->flicker->judged += crawl.flicker->judged;
+  sum->flicker->flips_ideal += crawl.flicker->flips_ideal;
+  sum->flicker->flips_practical += crawl.flicker->flips_practical;
+}
+
+}  // namespace
+
+absl::StatusOr<NextFrame> MakeNextFrame(const CompareStage& present, CompareStage next) {
+  if (present.has_truth() != next.has_truth()) {
+    return absl::InvalidArgumentError(
+        "the next frame: want a scene for both frames, or a read-back for both");
+  }
+  NextFrame frame;
+  frame.stage = std::move(next);
+  if (!present.has_truth()) return frame;
+  absl::StatusOr<std::vector<uint8_t>> seen =
+      SeenFrom(frame.stage.screen.camera, *present.caster, present.screen);
+  if (!seen.ok()) return seen.status();
+  frame.seen = *std::move(seen);
+  return frame;
+}
+
+bool SeesAnythingTwice(const NextFrame& next) {
+  return !next.stage.has_truth() ||
+         std::any_of(next.seen.begin(), next.seen.end(), [](uint8_t seen) { return seen != 0; });
+}
+
+absl::optional<double> IdealFlipShare(const MapCrawl& crawl) {
+  if (!crawl.flicker.has_value() || crawl.flicker->judged == 0) return absl::nullopt;
+  return static_cast<double>(crawl.flicker->flips_ideal) /
+         static_cast<double>(crawl.flicker->judged);
+}
+
+absl::StatusOr<MapCrawl> MeasureMapCrawl(const PresentMap& present,
+                                         const NextFrame& next,
+                                         const LitStage& next_frame,
+                                         const Eigen::Matrix4d& next_map_from_world,
+                                         MapSize map,
+                                         const BiasOptions& bias) {
+  const absl::StatusOr<Crawl> points =
+      MeasureCrawl({present.frame.readback, present.map_from_world, map},
+                   {next_frame.readback, next_map_from_world, map},
+                   next_frame.light);
+  if (!points.ok()) return points.status();
+  MapCrawl crawl;
+  crawl.points = *points;
+  const CompareStage& stage = *present.frame.stage;
+  if (!stage.has_truth()) return crawl;
+  const absl::StatusOr<ShadowImage> next_shadows = JudgeMatrix(*stage.caster,
+                                                               stage.screen,
+                                                               present.truth,
+                                                               present.frame.light,
+                                                               next_map_from_world,
+                                                               map,
+                                                               bias);
+  if (!next_shadows.ok()) return next_shadows.status();
+  crawl.flicker = CountFlips(present.shadows, *next_shadows, next.seen);
+  return crawl;
+}
+
+absl::optional<MapCrawl> PooledCrawl(absl::Span<const MapCrawl> crawls) {
+  if (crawls.empty()) return absl::nullopt;
+  MapCrawl sum;
+  for (const MapCrawl& crawl : crawls) Pool(crawl, &sum);
+  return sum;
+}
+
+}  // namespace lightfit

@@ -1,0 +1,64 @@
+// jobs/compare/crawl.h
+//
+// How much the shadows of a method crawl to the next frame: what `lightfit compare --crawl` adds.
+// In:   the next frame as a CompareStage; the method's matrix in either frame.
+// Out:  MapCrawl of one method and light, and of many lights together.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/types/optional.h"
+#include "absl/types/span.h"
+#include "geometry/map_size.h"
+#include "jobs/compare/stage.h"
+#include "optimizer/figures/stability.h"
+#include "render/flicker.h"
+
+namespace lightfit {
+
+// The frame after the one that is compared. The scene and its lights stand still.
+struct NextFrame {
+  CompareStage stage;
+
+  // Pixels of the present screen whose surfaces the next camera sees too, see SeenFrom(); empty
+  // without truth.
+  std::vector<uint8_t> seen;
+};
+
+// InvalidArgument when `next` has a caster and `present` has not, or the reverse.
+absl::StatusOr<NextFrame> MakeNextFrame(const CompareStage& present, CompareStage next);
+
+// Whether any surface of the screen is seen in both frames; without truth always.
+bool SeesAnythingTwice(const NextFrame& next);
+
+struct MapCrawl {
+  Crawl points;                     // of the read-backs
+  absl::optional<Flicker> flicker;  // of the screen; absent without truth
+};
+
+// Of the pixels seen in both frames; absent without truth or without such pixels.
+absl::optional<double> IdealFlipShare(const MapCrawl& crawl);
+
+// A light in the present frame, and a map of it with its shadows there (empty without truth).
+struct PresentMap {
+  const LitStage& frame;
+  absl::Span<const Lighting> truth;
+  const Eigen::Matrix4d& map_from_world;
+  const ShadowImage& shadows;
+};
+
+// From that map to `next_map_from_world`, the light's in the next frame.
+absl::StatusOr<MapCrawl> MeasureMapCrawl(const PresentMap& present,
+                                         const NextFrame& next,
+                                         const LitStage& next_frame,
+                                         const Eigen::Matrix4d& next_map_from_world,
+                                         MapSize map,
+                                         const BiasOptions& bias);
+
+// As if all points, and all pixels, were one light's. Nothing from nothing.
+absl::optional<MapCrawl> PooledCrawl(absl::Span<const MapCrawl> crawls);
+
+}  // namespace lightfit

@@ -1,0 +1,247 @@
+#include "jobs/compare/rows.h"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <utility>
+
+#include "absl/strings/str_format.h"
+#include "geometry/homography.h"
+#include "jobs/fit_comparison.h"
+#include "methods/method.h"
+#include "optimizer/energy/footprint.h"
+#include "optimizer/figures/foretell.h"
+#include "optimizer/fit.h"
+#include "optimizer/readback/cover.h"
+#include "optimizer/readback/samples.h"
+#include "optimizer/readback/surfaces.h"
+
+namespace lightfit {
+namespace {
+
+// One light's samples, in coordinates that keep precision however far the light is.
+struct Yardstick {
+  Eigen::Matrix3d normalized_from_ray = Eigen::Matrix3d::Identity();
+  Samples samples;
+};
+
+absl::StatusOr<Yardstick> MakeYardstick(const Readback& readback,
+                                        const Light& light,
+                                        const SampleOptions& options) {
+  const absl::StatusOr<Receivers> receivers =
+      FindReceivers(readback, uint32_t{1} << light.shadow_bit, options);
+  if (!receivers.ok()) return receivers.status();
+  Yardstick yardstick;
+  // No cover, as when receivers surround the light: light space will do.
+  const absl::StatusOr<RayCover> cover = CoverReceivers(*receivers, light);
+  if (cover.ok()) yardstick.normalized_from_ray = cover->normalized_from_ray;
+  yardstick.samples =
+      SelectSamples(*receivers, light, yardstick.normalized_from_ray, /*with_edge_normals=*/false);
+  return yardstick;
+}
+
+void AddNote(const std::string& note, ComparedMap* row) {
+  row->note += (row->note.empty() ? "" : "; ") + note;
+}
+
+// Sets the figures, or the note that says why there are none.
+void Measure(const Yardstick& yardstick, const Eigen::Matrix3d& map_from_ray, ComparedMap* row) {
+  const Samples& samples = yardstick.samples;
+  if (samples.size() == 0) return AddNote("no shadow edge in the read-back to measure by", row);
+  const Eigen::Matrix3d map_from_normalized =
+      map_from_ray * yardstick.normalized_from_ray.inverse();
+  const Eigen::Vector3d axis = map_from_normalized.row(2);
+  int64_t num_behind = 0;
+  double total_weight = 0.0;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    if (!(axis.dot(samples.At(i).X) > 0.0)) ++num_behind;
+    total_weight += samples.weight[i];
+  }
+  if (num_behind > 0) {
+    return AddNote(
+        absl::StrFormat("no energy: w <= 0 at %d of %d samples, which the map cannot show",
+                        num_behind,
+                        samples.size()),
+        row);
+  }
+  MapFigures figures;
+  figures.footprint = ComputeFootprintStatistics(map_from_normalized, samples);
+  figures.energy = 2.0 * total_weight * figures.footprint.rms * figures.footprint.rms;
+  if (!std::isfinite(figures.energy) || !std::isfinite(figures.footprint.worst)) {
+    return AddNote("no energy: the matrix is singular at the samples", row);
+  }
+  row->figures = figures;
+}
+
+// How a method gets its matrix from what is known of one frame.
+using SetUp = std::function<absl::StatusOr<MethodMap>(const LitStage&)>;
+
+SetUp SetUpOf(Method method, MapSize map) {
+  return [method, map](const LitStage& frame) {
+    MethodInput input = frame.stage->view;
+    input.light = frame.light;
+    input.map = map;
+    return SetUpMap(method, input);
+  };
+}
+
+SetUp SetUpOf(const FitOptions& options, MapSize map) {
+  return [options, map](const LitStage& frame) -> absl::StatusOr<MethodMap> {
+    const absl::StatusOr<LightMatrix> fit = FitLight(frame.readback, frame.light, map, options);
+    if (!fit.ok()) return fit.status();
+    return MethodMap{fit->map_from_world, ""};
+  };
+}
+
+SetUp SetUpOf(const GivenMatrices& given) {
+  return [&given](const LitStage& frame) -> absl::StatusOr<MethodMap> {
+    const absl::StatusOr<Eigen::Matrix4d> matrix = given.Of(frame.light.name);
+    if (!matrix.ok()) return matrix.status();
+    return MethodMap{*matrix, ""};
+  };
+}
+
+// Fills in the rows of one light.
+class RowMaker {
+ public:
+  RowMaker(const LitStage& frame,
+           const absl::StatusOr<Yardstick>& yardstick,
+           const CompareOptions& options,
+           LightComparison* comparison)
+      : frame_(frame), yardstick_(yardstick), options_(options), comparison_(comparison) {
+    if (options.next != nullptr) next_frame_ = Lit(options.next->stage, comparison->light);
+  }
+
+  void Add(const std::string& name, const SetUp& set_up) {
+    if (options_.before_row) options_.before_row(name);
+    comparison_->maps.emplace_back();
+    ComparedMap& row = comparison_->maps.back();
+    row.name = name;
+    ShadowImage shadows;
+    row.status = AddPresent(set_up, &row, &shadows);
+    if (!row.status.ok()) return;
+    if (options_.next != nullptr) AddCrawl(set_up, shadows, &row);
+    if (options_.keep_images) row.image = std::move(shadows);
+  }
+
+ private:
+  absl::Status AddPresent(const SetUp& set_up, ComparedMap* row, ShadowImage* shadows) {
+    const absl::StatusOr<MethodMap> map = set_up(frame_);
+    if (!map.ok()) return map.status();
+    row->note = map->note;
+    const Light& light = frame_.light;
+    const absl::StatusOr<Eigen::Matrix3d> map_from_ray = MapFromRay(map->map_from_world, light);
+    if (!map_from_ray.ok()) return map_from_ray.status();
+    row->map_from_world = map->map_from_world;
+    if (yardstick_.ok()) Measure(*yardstick_, *map_from_ray, row);
+    const absl::StatusOr<double> foretold =
+        ForetellWrongShare(frame_.readback, light, row->map_from_world, options_.map);
+    if (foretold.ok()) row->foretold = *foretold;
+    const CompareStage& stage = *frame_.stage;
+    if (!stage.has_truth()) return absl::OkStatus();
+    absl::StatusOr<ShadowImage> image = JudgeMatrix(*stage.caster,
+                                                    stage.screen,
+                                                    comparison_->truth,
+                                                    light,
+                                                    row->map_from_world,
+                                                    options_.map,
+                                                    options_.bias);
+    if (!image.ok()) return image.status();
+    row->wrong = image->wrong;
+    *shadows = *std::move(image);
+    return absl::OkStatus();
+  }
+
+  // Sets the crawl, or the note that says why there is none.
+  void AddCrawl(const SetUp& set_up, const ShadowImage& shadows, ComparedMap* row) {
+    if (options_.before_row) options_.before_row(row->name + ", next frame");
+    const absl::StatusOr<MethodMap> map = set_up(next_frame_);
+    const absl::StatusOr<MapCrawl> crawl =
+        map.ok() ? MeasureMapCrawl({frame_, comparison_->truth, row->map_from_world, shadows},
+                                   *options_.next,
+                                   next_frame_,
+                                   map->map_from_world,
+                                   options_.map,
+                                   options_.bias)
+                 : map.status();
+    if (!crawl.ok()) {
+      return AddNote("no crawl, in the next frame: " + std::string(crawl.status().message()), row);
+    }
+    row->crawl = *crawl;
+  }
+
+  const LitStage& frame_;
+  LitStage next_frame_;
+  const absl::StatusOr<Yardstick>& yardstick_;
+  const CompareOptions& options_;
+  LightComparison* comparison_;
+};
+
+// Algorithm 1 with normalised rays instead of light space.
+FitOptions LineOptions(const FitOptions& options) {
+  FitOptions line = PublishedOptions(options);
+  line.ray_space = RaySpace::kNormalized;
+  line.sample_by_sample = false;
+  return line;
+}
+
+}  // namespace
+
+const ComparedMap* LightComparison::Find(absl::string_view name) const {
+  for (const ComparedMap& map : maps) {
+    if (map.name == name) return &map;
+  }
+  return nullptr;
+}
+
+std::vector<std::string> RowNames(const std::vector<GivenMatrices>& given) {
+  std::vector<std::string> names;
+  for (const Method method : AllMethods()) names.emplace_back(MethodName(method));
+  names.emplace_back(kAsPublishedName);
+  names.emplace_back(kLineName);
+  for (const GivenMatrices& matrices : given) names.push_back(matrices.name);
+  names.emplace_back(kLightfitName);
+  return names;
+}
+
+LightComparison CompareMaps(const CompareStage& stage,
+                            const Light& light,
+                            const CompareOptions& options) {
+  if (absl::Status status = ValidateLight(light); !status.ok()) {
+    return FailedRows(light, status, options);
+  }
+  LightComparison comparison;
+  comparison.light = light;
+  if (stage.has_truth()) {
+    comparison.truth = TrueLighting(*stage.caster, stage.screen, light);
+    comparison.lighting = CountLighting(comparison.truth);
+  }
+  const LitStage frame = Lit(stage, light);
+  const absl::StatusOr<Yardstick> yardstick =
+      MakeYardstick(frame.readback, frame.light, FitOptions::AsPublished().samples);
+  if (yardstick.ok()) comparison.samples = yardstick->samples.counts;
+
+  RowMaker rows(frame, yardstick, options, &comparison);
+  const MapSize map = options.map;
+  for (const Method method : AllMethods()) rows.Add(MethodName(method), SetUpOf(method, map));
+  rows.Add(kAsPublishedName, SetUpOf(PublishedOptions(options.fit), map));
+  rows.Add(kLineName, SetUpOf(LineOptions(options.fit), map));
+  for (const GivenMatrices& given : options.given) rows.Add(given.name, SetUpOf(given));
+  rows.Add(kLightfitName, SetUpOf(options.fit, map));
+  if (!options.keep_images) comparison.truth.clear();
+  return comparison;
+}
+
+LightComparison FailedRows(const Light& light,
+                           const absl::Status& status,
+                           const CompareOptions& options) {
+  LightComparison comparison;
+  comparison.light = light;
+  for (const std::string& name : RowNames(options.given)) {
+    comparison.maps.emplace_back();
+    comparison.maps.back().name = name;
+    comparison.maps.back().status = status;
+  }
+  return comparison;
+}
+
+}  // namespace lightfit

@@ -1,0 +1,101 @@
+// jobs/compare/rows.h
+//
+// Every way to set up a shadow map, side by side on one light: the rows of `lightfit compare`.
+// In:   a CompareStage (a scene that a camera sees, or a read-back alone), a light, options.
+// Out:  LightComparison: of each method the matrix, its energy, footprints, wrong pixels
+//       and crawl.
+//
+// Rows, in this order: the published set-ups of methods/ by their names; "as-published", Chong and
+// Gortler's Algorithm 1 to the letter; "line", the same in normalised rays; matrices given from
+// outside; "lightfit", the fit that the options ask for. A method that fails has a row that says
+// why.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/types/optional.h"
+#include "geometry/light.h"
+#include "geometry/map_size.h"
+#include "io/given_matrices.h"
+#include "jobs/compare/crawl.h"
+#include "jobs/compare/stage.h"
+#include "optimizer/fit_options.h"
+#include "optimizer/light_matrix.h"
+#include "render/judge.h"
+#include "render/true_lighting.h"
+
+namespace lightfit {
+
+inline constexpr char kLightfitName[] = "lightfit";
+inline constexpr char kAsPublishedName[] = "as-published";
+inline constexpr char kLineName[] = "line";
+
+struct CompareOptions {
+  MapSize map = {400, 400};
+  FitOptions fit;  // of "lightfit"; its margin and min_samples go for the other fits too
+  BiasOptions bias;
+  std::vector<GivenMatrices> given;
+  bool keep_images = false;
+
+  // Where crawl is measured to, by setting up every method there as well; null: nowhere. Must
+  // outlive the comparison.
+  const NextFrame* next = nullptr;
+
+  // Called before each row with its name, and with "NAME, next frame" before its crawl; for a
+  // progress bar.
+  std::function<void(const std::string&)> before_row;
+};
+
+// Chong and Gortler's energy, math.md (3), whatever was minimised: of squared footprints, over the
+// samples of the read-back that FitOptions::AsPublished() takes.
+struct MapFigures {
+  double energy = 0.0;
+  FootprintStatistics footprint;
+};
+
+struct ComparedMap {
+  std::string name;
+  absl::Status status;  // why there is no matrix, or why it cannot be used for this light
+  std::string note;     // empty, or how the method fell back, or why `figures` are absent
+  Eigen::Matrix4d map_from_world = Eigen::Matrix4d::Identity();  // texels of CompareOptions::map
+
+  absl::optional<MapFigures> figures;  // absent: no samples, or w <= 0 at some of them
+  absl::optional<WrongPixels> wrong;   // absent without truth
+  absl::optional<double> foretold;     // share of wrong pixels foretold from the read-back
+  absl::optional<MapCrawl> crawl;      // to CompareOptions::next; absent: `note` says why
+  ShadowImage image;                   // CompareOptions::keep_images
+};
+
+struct LightComparison {
+  Light light;
+  LightingCounts lighting;  // of the screen; zeros without truth
+  SampleCounts samples;     // of the read-back, that energies are measured by
+  std::vector<ComparedMap> maps;
+  std::vector<Lighting> truth;  // CompareOptions::keep_images
+
+  // Null when there is no row of that name.
+  const ComparedMap* Find(absl::string_view name) const;
+
+  // The row that the others are compared with.
+  const ComparedMap& lightfit() const { return maps.back(); }
+};
+
+// As many rows as CompareMaps() gives, and their names.
+std::vector<std::string> RowNames(const std::vector<GivenMatrices>& given);
+
+// Never fails as a whole: a light that cannot be used has rows that say so.
+LightComparison CompareMaps(const CompareStage& stage,
+                            const Light& light,
+                            const CompareOptions& options);
+
+// The same for a light that could not even be read.
+LightComparison FailedRows(const Light& light,
+                           const absl::Status& status,
+                           const CompareOptions& options);
+
+}  // namespace lightfit

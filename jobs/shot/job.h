@@ -1,0 +1,63 @@
+// jobs/shot/job.h
+//
+// What `lightfit shot` is to do: frames, lights, modes, options and where results go.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "geometry/clip.h"
+#include "geometry/light.h"
+#include "jobs/shot/frames.h"
+#include "optimizer/tracking/tracker.h"
+
+namespace lightfit {
+
+enum class ShotMode {
+  kPerFrame,  // every frame has its own best matrix
+  kTracked,   // a matrix is kept while it is good enough: optimizer/tracking/tracker.h
+  kPerShot    // one matrix for all frames: it never crawls
+};
+
+inline constexpr std::array<ShotMode, 3> kShotModes = {
+    ShotMode::kPerFrame, ShotMode::kTracked, ShotMode::kPerShot};
+
+// "per-frame", "tracked", "per-shot": in files, tables and folders.
+const char* ShotModeName(ShotMode mode);
+
+struct ShotJob {
+  std::string name;  // of the shot
+  std::vector<ShotFrame> frames;
+  std::vector<Light> lights;
+
+  std::array<bool, kShotModes.size()> modes = {true, true, true};  // by ShotMode
+  bool Has(ShotMode mode) const { return modes[static_cast<size_t>(mode)]; }
+
+  MapSize map = {1024, 1024};
+  ClipConvention clip = ClipConvention::Vulkan();
+  TrackerOptions tracker;  // TrackerOptions::fit is for all modes
+  const FitOptions& fit() const { return tracker.fit; }
+
+  // kPerShot, L1 metrics: times that the samples are weighed anew, in the shot's own map. >= 0.
+  int rounds = 2;
+
+  std::string folder;  // for results; it is there
+  bool force = false;  // whether results that are there already are computed again
+  int num_threads = 1;
+  bool quiet = false;  // no progress bar
+};
+
+// Where results go. A name that ends in a number keeps frames in order.
+struct ShotPaths {
+  std::string folder;
+
+  std::string Result(ShotMode mode, const ShotFrame& frame) const;
+  std::string Summary(const ShotFrame& frame) const;
+  std::string SummaryKey(const ShotFrame& frame) const;
+  std::string Shot() const;  // kPerShot: the matrices, once
+  std::string Csv() const;
+  std::string Plot() const;
+};
+
+}  // namespace lightfit

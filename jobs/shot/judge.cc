@@ -1,0 +1,113 @@
+#include "jobs/shot/judge.h"
+
+#include <utility>
+
+#include "base/text_file.h"
+#include "optimizer/figures/evaluate.h"
+
+namespace lightfit {
+namespace {
+
+absl::StatusOr<ShotFit> JudgeFit(const ShotJob& job,
+                                 const Light& light,
+                                 const Readback& readback,
+                                 const TrackedMatrix& tracked,
+                                 const ReadbackFile* file_before,
+                                 const absl::optional<Eigen::Matrix4d>& map_before) {
+  ShotFit fit;
+  fit.tracked = tracked;
+  LightMatrix& matrix = fit.tracked.matrix;
+  const absl::StatusOr<MatrixFigures> figures =
+      EvaluateMatrix(readback, light, matrix.map_from_world, matrix.map, job.fit());
+  if (!figures.ok()) return figures.status();
+  matrix.energy = figures->energy;
+  matrix.footprint = figures->footprint;
+  matrix.samples = figures->samples;
+  fit.wrong_share = figures->wrong_share;
+  if (file_before == nullptr || !map_before.has_value()) return fit;
+  const Readback readback_before = file_before->View();
+  const absl::StatusOr<Crawl> crawl = MeasureCrawl({readback_before, *map_before, job.map},
+                                                   {readback, matrix.map_from_world, matrix.map},
+                                                   light,
+                                                   job.fit().samples);
+  if (!crawl.ok()) return crawl.status();
+  fit.crawl = *crawl;
+  return fit;
+}
+
+}  // namespace
+
+absl::StatusOr<ReadbackFile> ReadFrame(const ShotFrame& frame, absl::Span<const Light> lights) {
+  if (!frame.exr.ok()) return frame.exr.status();
+  absl::StatusOr<ReadbackFile> file = ReadReadbackExr(frame.path, lights, *frame.exr);
+  if (!file.ok()) return file.status();
+  const absl::Status status = InFile(frame.path, ValidateReadback(file->View()));
+  if (!status.ok()) return status;
+  return file;
+}
+
+TrackedMatrices FitReadable(absl::Span<const Light> lights,
+                            const absl::StatusOr<ReadbackFile>& file,
+                            const std::function<TrackedMatrices(absl::Span<const Light>)>& fit) {
+  if (!file.ok()) return TrackedMatrices(lights.size(), file.status());
+  std::vector<Light> readable;
+  for (size_t i = 0; i < lights.size(); ++i) {
+    if (file->light_status[i].ok()) readable.push_back(lights[i]);
+  }
+  TrackedMatrices fits = fit(readable);
+  TrackedMatrices all;
+  size_t next = 0;
+  for (const absl::Status& status : file->light_status) {
+    if (status.ok()) {
+      all.push_back(std::move(fits[next++]));
+    } else {
+      all.emplace_back(status);
+    }
+  }
+  return all;
+}
+
+LightMaps MapsOf(absl::Span<const absl::StatusOr<TrackedMatrix>> matrices) {
+  LightMaps maps;
+  for (const absl::StatusOr<TrackedMatrix>& matrix : matrices) {
+    maps.emplace_back();
+    if (matrix.ok()) maps.back() = matrix->matrix.map_from_world;
+  }
+  return maps;
+}
+
+LightMaps MapsOf(const ShotJob& job, const v1::FitResult& result) {
+  LightMaps maps(job.lights.size());
+  for (size_t i = 0; i < maps.size() && static_cast<int>(i) < result.lights_size(); ++i) {
+    const v1::LightResult& light = result.lights(static_cast<int>(i));
+    if (!light.has_map_from_world()) continue;
+    const absl::StatusOr<Eigen::Matrix4d> map =
+        MatrixFromProto(light.map_from_world(), "mapFromWorld");
+    if (map.ok()) maps[i] = *map;
+  }
+  return maps;
+}
+
+std::vector<absl::StatusOr<ShotFit>> JudgeFits(
+    const ShotJob& job,
+    const absl::StatusOr<ReadbackFile>& file,
+    absl::Span<const absl::StatusOr<TrackedMatrix>> matrices,
+    const FrameBefore& before) {
+  std::vector<absl::StatusOr<ShotFit>> fits;
+  for (size_t i = 0; i < matrices.size(); ++i) {
+    if (!matrices[i].ok()) {
+      fits.emplace_back(matrices[i].status());
+      continue;
+    }
+    const bool has_before = before.file != nullptr && before.file->light_status[i].ok();
+    fits.push_back(JudgeFit(job,
+                            job.lights[i],
+                            file->View(),
+                            *matrices[i],
+                            has_before ? before.file : nullptr,
+                            has_before ? before.maps[i] : absl::nullopt));
+  }
+  return fits;
+}
+
+}  // namespace lightfit

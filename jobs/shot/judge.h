@@ -1,0 +1,45 @@
+// jobs/shot/judge.h
+//
+// A frame of a shot in memory, and how good matrices are in it.
+// In:   the frame's file; per light a matrix, or why there is none; the frame before.
+// Out:  ShotFit: the matrices with their figures on this frame's samples, and their crawl.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/types/optional.h"
+#include "absl/types/span.h"
+#include "jobs/shot/result.h"
+
+namespace lightfit {
+
+using LightMaps = std::vector<absl::optional<Eigen::Matrix4d>>;  // map_from_world, by light
+
+// Reads and checks the frame.
+absl::StatusOr<ReadbackFile> ReadFrame(const ShotFrame& frame, absl::Span<const Light> lights);
+
+// Calls `fit` for the lights that the file has a shadow of. The others get their own status, and
+// all that of a file which could not be read.
+TrackedMatrices FitReadable(absl::Span<const Light> lights,
+                            const absl::StatusOr<ReadbackFile>& file,
+                            const std::function<TrackedMatrices(absl::Span<const Light>)>& fit);
+
+// The maps of those that have one; the same from a result of an earlier run.
+LightMaps MapsOf(absl::Span<const absl::StatusOr<TrackedMatrix>> matrices);
+LightMaps MapsOf(const ShotJob& job, const v1::FitResult& result);
+
+struct FrameBefore {
+  const ReadbackFile* file = nullptr;  // null: there is none
+  LightMaps maps;
+};
+
+// Energies and footprints become those of EvaluateMatrix(), by one measure for all modes.
+std::vector<absl::StatusOr<ShotFit>> JudgeFits(
+    const ShotJob& job,
+    const absl::StatusOr<ReadbackFile>& file,
+    absl::Span<const absl::StatusOr<TrackedMatrix>> matrices,
+    const FrameBefore& before);
+
+}  // namespace lightfit

@@ -1,0 +1,63 @@
+// jobs/shot/result.h
+//
+// What came of one frame in one mode: as the JSON file that is kept, and as rows for table, CSV and
+// plot.
+// In:   per light a matrix with its figures on this frame, or why there is none.
+// Out:  v1::FitResult; from it, fresh or read back, ShotRow.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/types/optional.h"
+#include "absl/types/span.h"
+#include "io/readback_exr.h"
+#include "jobs/shot/job.h"
+#include "optimizer/figures/stability.h"
+#include "optimizer/tracking/tracker.h"
+#include "wire/result_json.h"
+
+namespace lightfit {
+
+struct ShotFit {
+  TrackedMatrix tracked;
+  double wrong_share = 0.0;     // foretold, 0 ... 1
+  absl::optional<Crawl> crawl;  // against the frame before, where both have a matrix
+};
+
+// `fits[l]` belongs to job.lights[l]; `readback` is null when the frame could not be read, and then
+// the key is left out, so that another run tries again. `states`: kTracked only.
+v1::FitResult ShotResultToProto(const ShotJob& job,
+                                ShotMode mode,
+                                size_t frame,
+                                const std::string& key,
+                                const ReadbackFile* readback,
+                                absl::Span<const absl::StatusOr<ShotFit>> fits,
+                                absl::Span<const TrackedState> states);
+
+// One light in one frame in one mode.
+struct ShotRow {
+  ShotMode mode = ShotMode::kPerFrame;
+  size_t frame = 0, light = 0;  // in ShotJob
+  std::string error;            // why there is no matrix; empty: there is
+  std::string action;           // kTracked: TrackerActionName(), else empty
+  bool moved = true;            // whether texels moved over surfaces in this frame
+
+  double energy = 0.0;
+  FootprintStatistics footprint;  // read-back pixels per texel
+  double wrong_share = 0.0;       // foretold, 0 ... 1
+  absl::optional<Crawl> crawl;
+};
+
+// By mode, frame and light; modes that were not asked for have frames without rows.
+using ShotRows = std::array<std::vector<std::vector<ShotRow>>, kShotModes.size()>;
+
+// One for each light.
+std::vector<ShotRow> RowsOfResult(const ShotJob& job,
+                                  ShotMode mode,
+                                  size_t frame,
+                                  const v1::FitResult& result);
+
+}  // namespace lightfit

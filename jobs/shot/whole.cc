@@ -1,0 +1,226 @@
+#include "jobs/shot/whole.h"
+
+#include <algorithm>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "base/parallel.h"
+#include "jobs/shot/judge.h"
+#include "optimizer/energy/summary_total.h"
+#include "optimizer/fit.h"
+
+namespace lightfit {
+namespace {
+
+// Frames that a thread takes in one go: it reads one more, the frame before them.
+constexpr int kFramesAtOnce = 8;
+
+// Further rounds are not worth their reading below this share of the energy.
+constexpr double kLeastGain = 1e-4;
+
+// A light's matrix for the whole shot; its energy is the sum over all frames.
+using ShotMatrices = LightMatrices;
+
+// The minimum of the summed summaries.
+absl::StatusOr<LightMatrix> FitTotal(const SummaryTotal& total,
+                                     const Light& light,
+                                     const ShotJob& job) {
+  const absl::StatusOr<Summary> summary = SummaryOfTotal(total);
+  if (!summary.ok()) return summary.status();
+  return Fit(*summary, light, job.map, job.fit());
+}
+
+ShotMatrices FitSum(const SummarySet& sum, const ShotJob& job) {
+  ShotMatrices matrices;
+  for (const Light& light : job.lights) {
+    matrices.emplace_back(absl::FailedPreconditionError(
+        absl::StrFormat("light \"%s\": no frame of the shot could be read", light.name)));
+    for (const LightSummary& summary : sum.lights) {
+      if (summary.name() != light.name) continue;
+      matrices.back() = summary.total.num_frames > 0 ? FitTotal(summary.total, light, job)
+                                                     : absl::StatusOr<LightMatrix>(summary.failure);
+    }
+  }
+  return matrices;
+}
+
+// Every light's samples of all frames, weighed in its matrix. Null where there is none.
+std::vector<std::optional<SummaryTotal>> WeighAllFrames(const ShotMatrices& matrices,
+                                                        int round,
+                                                        ShotContext* context) {
+  const ShotJob& job = context->job;
+  std::vector<std::optional<SummaryTotal>> totals(job.lights.size());
+  std::mutex mutex;
+  const auto weigh = [&](size_t frame) {
+    const absl::StatusOr<ReadbackFile> file = ReadFrame(job.frames[frame], job.lights);
+    context->frame_status[frame] = file.status();
+    for (size_t i = 0; i < job.lights.size() && file.ok(); ++i) {
+      if (!matrices[i].ok() || !file->light_status[i].ok()) continue;
+      const absl::StatusOr<Summary> summary =
+          SummarizeInMap(file->View(), job.lights[i], matrices[i]->map_from_world, job.fit());
+      if (!summary.ok()) continue;  // as when it was summarised first: the light is not seen here
+      const SummaryTotal own = TotalOf(*summary, job.lights[i]);
+      const std::lock_guard<std::mutex> lock(mutex);
+      if (totals[i].has_value()) {
+        context->Fail(AddToTotal(own, &*totals[i]));
+      } else {
+        totals[i] = own;
+      }
+    }
+    context->Step(absl::StrCat("per-shot, round ", round));
+  };
+  ParallelFor(static_cast<int>(job.frames.size()), 1, job.num_threads, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) weigh(i);
+  });
+  return totals;
+}
+
+// `matrices` are the minima of what was summed so far, in each frame's own weights.
+ShotMatrices Reweighted(ShotMatrices matrices, ShotContext* context) {
+  const ShotJob& job = context->job;
+  ShotMatrices best = matrices;
+  for (int round = 0; round <= job.rounds; ++round) {
+    const auto totals = WeighAllFrames(matrices, round, context);
+    bool gains = false;
+    for (size_t i = 0; i < matrices.size(); ++i) {
+      if (!matrices[i].ok() || !totals[i].has_value()) continue;
+      matrices[i]->energy = totals[i]->footprint_sum.Value();
+      if (round == 0 || matrices[i]->energy < best[i]->energy) {
+        gains |= round == 0 || matrices[i]->energy < (1.0 - kLeastGain) * best[i]->energy;
+        best[i] = matrices[i];
+      }
+      matrices[i] = FitTotal(*totals[i], job.lights[i], job);
+    }
+    if (!gains) {
+      context->Skip((job.rounds - round) * static_cast<int>(job.frames.size()));
+      break;
+    }
+  }
+  return best;
+}
+
+v1::FitResult ShotToProto(const ShotContext& context, const ShotMatrices& matrices) {
+  const ShotJob& job = context.job;
+  FitReport report;
+  report.source = job.name;
+  report.options = job.fit();
+  report.options.compute_statistics = false;  // a sum has the RMS alone
+  report.map = job.map;
+  report.clip = job.clip;
+  for (size_t i = 0; i < matrices.size(); ++i) {
+    LightFit fit;
+    fit.light = job.lights[i];
+    fit.matrix = matrices[i];
+    report.lights.push_back(std::move(fit));
+  }
+  v1::FitResult result = FitResultToProto(report);
+  result.mutable_readback()->clear_camera();
+  result.mutable_shot()->set_mode(v1::SHOT_MODE_PER_SHOT);
+  result.mutable_shot()->set_frame(job.name);
+  result.mutable_shot()->set_key(context.keys.shot);
+  return result;
+}
+
+// As the frames of the shot see them: nothing was searched there.
+TrackedMatrices MatricesOf(const ShotJob& job, const v1::FitResult& shot) {
+  const LightMaps maps = MapsOf(job, shot);
+  TrackedMatrices matrices;
+  for (size_t i = 0; i < maps.size(); ++i) {
+    if (!maps[i].has_value()) {
+      const v1::Status& status = shot.lights(static_cast<int>(i)).status();
+      matrices.emplace_back(
+          absl::Status(static_cast<absl::StatusCode>(status.code()), status.message()));
+      continue;
+    }
+    TrackedMatrix tracked;
+    tracked.matrix.light_name = job.lights[i].name;
+    tracked.matrix.map = job.map;
+    tracked.matrix.map_from_world = *maps[i];
+    tracked.matrix.stop_reason = StopReason::kNoSearch;
+    matrices.push_back(std::move(tracked));
+  }
+  return matrices;
+}
+
+absl::StatusOr<v1::FitResult> ReadOrFit(const SummarySet& sum, ShotContext* context) {
+  const std::string path = context->paths.Shot();
+  if (context->HasShot()) return ReadFitResultJson(path);
+  ShotMatrices matrices = FitSum(sum, context->job);
+  if (IsL1(context->job.fit().metric)) matrices = Reweighted(std::move(matrices), context);
+  v1::FitResult result = ShotToProto(*context, matrices);
+  context->Fail(WriteFitResultJson(path, result));
+  return result;
+}
+
+// The shot's matrices in some consecutive frames.
+void JudgeFrames(const TrackedMatrices& matrices, int begin, int end, ShotContext* context) {
+  const ShotJob& job = context->job;
+  absl::StatusOr<ReadbackFile> before = absl::UnknownError("not read");
+  int last_read = -1;
+  for (int i = begin; i < end; ++i) {
+    if (context->IsDone(ShotMode::kPerShot, i)) {
+      const auto result = context->ReadDone(ShotMode::kPerShot, i);
+      context->Fail(result.status());
+      if (result.ok()) context->KeepRows(ShotMode::kPerShot, i, *result);
+      continue;
+    }
+    if (i > 0 && last_read != i - 1) before = ReadFrame(job.frames[i - 1], job.lights);
+    absl::StatusOr<ReadbackFile> file = ReadFrame(job.frames[i], job.lights);
+    context->frame_status[i] = file.status();
+    const TrackedMatrices readable = FitReadable(job.lights, file, [&](absl::Span<const Light>) {
+      TrackedMatrices some;
+      for (size_t light = 0; light < job.lights.size(); ++light) {
+        if (file->light_status[light].ok()) some.push_back(matrices[light]);
+      }
+      return some;
+    });
+    FrameBefore frame_before;
+    if (i > 0 && before.ok()) frame_before = {&*before, MapsOf(matrices)};
+    std::vector<absl::StatusOr<ShotFit>> fits = JudgeFits(job, file, readable, frame_before);
+    for (absl::StatusOr<ShotFit>& fit : fits) {
+      if (fit.ok()) fit->tracked.matrix.energy_start = fit->tracked.matrix.energy;
+    }
+    context->WriteResult(ShotMode::kPerShot,
+                         i,
+                         ShotResultToProto(job,
+                                           ShotMode::kPerShot,
+                                           i,
+                                           context->keys.Of(ShotMode::kPerShot, i),
+                                           file.ok() ? &*file : nullptr,
+                                           fits,
+                                           {}));
+    before = std::move(file);
+    last_read = i;
+    context->Step(absl::StrCat("per-shot, frame ", job.frames[i].name));
+  }
+}
+
+}  // namespace
+
+absl::Status FitWholeShot(const SummarySet& sum, ShotContext* context) {
+  const absl::StatusOr<v1::FitResult> shot = ReadOrFit(sum, context);
+  if (!shot.ok()) return shot.status();
+  const TrackedMatrices matrices = MatricesOf(context->job, *shot);
+  ParallelFor(static_cast<int>(context->job.frames.size()),
+              kFramesAtOnce,
+              context->job.num_threads,
+              [&](int begin, int end) { JudgeFrames(matrices, begin, end, context); });
+  return context->status();
+}
+
+int NumWholeShotSteps(const ShotContext& context) {
+  const ShotJob& job = context.job;
+  int num_steps = 0;
+  for (size_t i = 0; i < job.frames.size(); ++i) {
+    num_steps += context.IsDone(ShotMode::kPerShot, i) ? 0 : 1;
+  }
+  if (!context.HasShot() && IsL1(job.fit().metric)) {
+    num_steps += (job.rounds + 1) * static_cast<int>(job.frames.size());
+  }
+  return num_steps;
+}
+
+}  // namespace lightfit

@@ -1,0 +1,230 @@
+#include "optimizer/energy/summary_total.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <boost/multiprecision/eigen.hpp>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "absl/strings/str_format.h"
+#include "geometry/ray_hull.h"
+#include "optimizer/readback/cover.h"
+
+namespace lightfit {
+
+namespace {
+
+// Fine enough for what three doubles hold, and for lights at a million times the scene's size.
+using Wide = boost::multiprecision::number<boost::multiprecision::cpp_bin_float_100::backend_type,
+                                           boost::multiprecision::et_off>;
+using WideMatrix3 = Eigen::Matrix<Wide, 3, 3>;
+using WideMatrix6 = Eigen::Matrix<Wide, 6, 6>;
+
+// The nearest sum of so many doubles.
+void AddWide(Wide value, int num_parts, ExactSum* sum) {
+  for (int part = 0; part < num_parts; ++part) {
+    const auto rounded = value.convert_to<double>();
+    sum->Add(rounded);
+    value -= rounded;
+  }
+}
+
+Wide ToWide(const ExactSum& sum) {
+  Wide value = 0;
+  for (const double part : sum.Parts()) value += part;
+  return value;
+}
+
+// How many doubles hold what the way to light space and back takes, which is the fourth power of
+// the frame's condition: two for lights within some ten scene sizes, three up to a million.
+int NumParts(const Eigen::Matrix3d& normalized_from_ray) {
+  constexpr double kMostForTwo = 1e3;
+  const double condition = normalized_from_ray.norm() * normalized_from_ray.inverse().norm();
+  return condition <= kMostForTwo ? 2 : 3;
+}
+
+// The tensor in coordinates X' = N X, math.md 4: N acts on the first pair of indices, its
+// contragredient on the second.
+WideMatrix6 Transformed(const WideMatrix6& tensor, const WideMatrix3& new_from_old) {
+  const WideMatrix3 contragredient = new_from_old.inverse().transpose();
+  const WideMatrix6 on_rays = SymmetricCongruence(new_from_old);
+  const WideMatrix6 on_metric = SymmetricCongruence(contragredient);
+  return on_rays * tensor * on_metric.transpose();
+}
+
+// Whether samples may sum to it: no energy of theirs is negative, math.md (7).
+bool IsSumOfSamples(const EnergyTensor& tensor) {
+  constexpr double kRounding = 1e-9;  // share of the largest eigenvalue
+  const Eigen::Matrix<double, 9, 9> form = tensor.AsQuadraticForm();
+  if (!form.allFinite()) return false;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> solver(form,
+                                                                          Eigen::EigenvaluesOnly);
+  const auto& eigenvalues = solver.eigenvalues();  // in ascending order
+  return eigenvalues(0) >= -kRounding * eigenvalues(8);
+}
+
+SampleCounts AddCounts(const SampleCounts& a, const SampleCounts& b) {
+  SampleCounts sum;
+  sum.receivers = a.receivers + b.receivers;
+  sum.invalid_depth = a.invalid_depth + b.invalid_depth;
+  sum.candidates = a.candidates + b.candidates;
+  sum.background = a.background + b.background;
+  sum.discontinuity = a.discontinuity + b.discontinuity;
+  sum.facing_away = a.facing_away + b.facing_away;
+  sum.edge_on = a.edge_on + b.edge_on;
+  sum.used = a.used + b.used;
+  return sum;
+}
+
+// A point light's depths along the cover's axis as distances from the light. The far one holds for
+// all rays that RayCover::depth speaks of, up to four times the square around the covered ones.
+DepthRange DistancesOf(const RayCover& cover) {
+  constexpr double kCloseBy = 4.0;
+  const Eigen::Matrix3d ray_from_normalized = cover.normalized_from_ray.inverse();
+  double most = 1.0;
+  for (const double x : {-kCloseBy, kCloseBy}) {
+    for (const double y : {-kCloseBy, kCloseBy}) {
+      most = std::max(most, (ray_from_normalized * Eigen::Vector3d(x, y, 1.0)).norm());
+    }
+  }
+  return {cover.depth.near, cover.depth.far * most};
+}
+
+bool SameLight(const Light& a, const Light& b) {
+  if (a.name != b.name || a.kind != b.kind) return false;
+  return a.kind == Light::Kind::kPoint ? a.position == b.position : a.direction == b.direction;
+}
+
+std::string PlaceText(const Light& light) {
+  const bool is_point = light.kind == Light::Kind::kPoint;
+  const Eigen::Vector3d& place = is_point ? light.position : light.direction;
+  return absl::StrFormat("\"%s\" with %s (%.17g, %.17g, %.17g)",
+                         light.name,
+                         is_point ? "position" : "direction",
+                         place.x(),
+                         place.y(),
+                         place.z());
+}
+
+}  // namespace
+
+SummaryTotal TotalOf(const Summary& summary, const Light& light) {
+  const RayCover& cover = summary.cover;
+  SummaryTotal total;
+  total.light = light;
+  total.metric = summary.metric;
+  total.is_l1 = summary.footprint_sum > 0.0;
+  total.num_frames = 1;
+  const WideMatrix3 ray_from_normalized = cover.normalized_from_ray.cast<Wide>().inverse();
+  const WideMatrix6 tensor =
+      Transformed(summary.tensor.entries().cast<Wide>(), ray_from_normalized);
+  const int num_parts = NumParts(cover.normalized_from_ray);
+  for (int i = 0; i < 36; ++i) AddWide(tensor(i / 6, i % 6), num_parts, &total.tensor[i]);
+  total.total_weight.Add(summary.total_weight);
+  total.footprint_sum.Add(summary.footprint_sum);
+  total.counts = summary.counts;
+  if (cover.nothing_shadowed) return total;
+  const bool is_point = light.kind == Light::Kind::kPoint;
+  std::vector<Eigen::Vector3d> rays;
+  for (const Eigen::Vector2d& vertex : cover.hull) {
+    const Eigen::Vector3d ray = ray_from_normalized.cast<double>() * vertex.homogeneous();
+    rays.push_back(is_point ? ray.normalized() : Eigen::Vector3d(ray / ray.z()));
+  }
+  std::optional<std::vector<Eigen::Vector3d>> hull = ExtremeRays(std::move(rays));
+  total.surrounded = !hull.has_value();
+  if (hull.has_value()) total.hull = *std::move(hull);
+  for (int i = 0; i < 3; ++i) total.mean_ray[i].Add(cover.mean_ray(i));
+  total.depth = is_point ? DistancesOf(cover) : cover.depth;
+  return total;
+}
+
+absl::Status AddToTotal(const SummaryTotal& other, SummaryTotal* total) {
+  if (!SameLight(other.light, total->light)) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("summaries of different lights do not add: %s, and %s. A light that moves "
+                        "needs a map for each of its places",
+                        PlaceText(total->light),
+                        PlaceText(other.light)));
+  }
+  if (other.metric.across_edge != total->metric.across_edge ||
+      other.metric.whole != total->metric.whole) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("light \"%s\": summaries of different metrics do not add: summarise all "
+                        "frames with the same FitOptions",
+                        total->light.name));
+  }
+  const bool both_have_samples = other.counts.used > 0 && total->counts.used > 0;
+  if (both_have_samples && other.is_l1 != total->is_l1) {
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "light \"%s\": summaries of an L1 and a squared metric do not add: summarise all frames "
+        "with the same FitOptions",
+        total->light.name));
+  }
+  total->is_l1 = total->is_l1 || other.is_l1;
+  total->num_frames += other.num_frames;
+  for (int i = 0; i < 36; ++i) total->tensor[i].Add(other.tensor[i]);
+  total->total_weight.Add(other.total_weight);
+  total->footprint_sum.Add(other.footprint_sum);
+  total->counts = AddCounts(total->counts, other.counts);
+  for (int i = 0; i < 3; ++i) total->mean_ray[i].Add(other.mean_ray[i]);
+  total->depth = {std::min(total->depth.near, other.depth.near),
+                  std::max(total->depth.far, other.depth.far)};
+  std::vector<Eigen::Vector3d> rays = std::move(total->hull);
+  rays.insert(rays.end(), other.hull.begin(), other.hull.end());
+  std::optional<std::vector<Eigen::Vector3d>> hull = ExtremeRays(std::move(rays));
+  total->surrounded = total->surrounded || other.surrounded || !hull.has_value();
+  total->hull.clear();
+  if (!total->surrounded) total->hull = *std::move(hull);
+  return absl::OkStatus();
+}
+
+absl::StatusOr<Summary> SummaryOfTotal(const SummaryTotal& total) {
+  if (total.surrounded) return SurroundedError(total.light);
+  if (total.hull.empty()) {
+    return absl::FailedPreconditionError(absl::StrFormat(
+        "light \"%s\": none of its %d frames shows any of its shadow, so there is nothing to fit. "
+        "Leave the light out of the shot, or cover all receivers (--cover receivers)",
+        total.light.name,
+        total.num_frames));
+  }
+  const Eigen::Vector3d mean_ray(
+      total.mean_ray[0].Value(), total.mean_ray[1].Value(), total.mean_ray[2].Value());
+  absl::StatusOr<RayCover> cover = CoverRays(total.hull, total.depth, mean_ray, total.light);
+  if (!cover.ok()) return cover.status();
+  Summary summary;
+  summary.metric = total.metric;
+  summary.total_weight = total.total_weight.Value();
+  summary.footprint_sum = total.footprint_sum.Value();
+  summary.counts = total.counts;
+  WideMatrix6 tensor;
+  for (int i = 0; i < 36; ++i) tensor(i / 6, i % 6) = ToWide(total.tensor[i]);
+  summary.tensor =
+      EnergyTensor(Transformed(tensor, cover->normalized_from_ray.cast<Wide>()).cast<double>());
+  if (!IsSumOfSamples(summary.tensor)) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("light \"%s\": tensor: no samples sum to this, the summary is damaged: "
+                        "summarise its frames again",
+                        total.light.name));
+  }
+  summary.cover = *std::move(cover);
+  return summary;
+}
+
+absl::StatusOr<Summary> MergeSummaries(absl::Span<const Summary> summaries, const Light& light) {
+  if (summaries.empty()) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("light \"%s\": no summaries to add, want at least one", light.name));
+  }
+  SummaryTotal total = TotalOf(summaries.front(), light);
+  for (const Summary& summary : summaries.subspan(1)) {
+    absl::Status status = AddToTotal(TotalOf(summary, light), &total);
+    if (!status.ok()) return status;
+  }
+  return SummaryOfTotal(total);
+}
+
+}  // namespace lightfit

@@ -1,0 +1,62 @@
+#include "optimizer/figures/pixel_footprint.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+namespace lightfit {
+
+absl::StatusOr<PixelFootprints> PixelFootprints::Create(const Readback& readback,
+                                                        const Light& light,
+                                                        const Eigen::Matrix4d& map_from_world,
+                                                        const SampleOptions& options) {
+  if (absl::Status status = ValidateReadback(readback); !status.ok()) return status;
+  if (absl::Status status = ValidateLight(light); !status.ok()) return status;
+  if (!map_from_world.allFinite()) {
+    return absl::InvalidArgumentError("map_from_world has values that are not finite");
+  }
+  return PixelFootprints(readback, light, map_from_world, options);
+}
+
+PixelFootprints::PixelFootprints(const Readback& readback,
+                                 const Light& light,
+                                 const Eigen::Matrix4d& map_from_world,
+                                 const SampleOptions& options)
+    : readback_(readback),
+      options_(options),
+      affine_depth_(readback.camera, readback.depth_kind),
+      light_position_(light.HomogeneousPosition()),
+      world_from_screen_(readback.camera.WorldFromScreen()),
+      screen_from_world_(world_from_screen_.inverse()) {
+  map_from_screen_ << map_from_world.topRows<2>() * world_from_screen_,
+      map_from_world.row(3) * world_from_screen_;
+}
+
+std::optional<PixelFootprint> PixelFootprints::At(int x, int y) const {
+  PixelFootprint result;
+  DepthGradient& gradient = result.gradient;
+  if (!DepthGradientAt(readback_, affine_depth_, options_, x, y, &gradient)) return std::nullopt;
+  const Eigen::Vector4d screen(x + 0.5, y + 0.5, gradient.d, 1.0);
+  const Eigen::Vector3d position = (world_from_screen_ * screen).hnormalized();
+  const Eigen::Vector3d normal =
+      SurfaceNormal(screen_from_world_, readback_.camera.orthographic, x, y, gradient);
+  const Eigen::Vector3d to_light = light_position_.head<3>() - light_position_.w() * position;
+  if (!(normal.dot(to_light) > options_.min_cos_light * to_light.norm())) return std::nullopt;
+
+  // J_map_screen by the quotient rule, and its inverse.
+  const Eigen::Vector3d map = map_from_screen_ * screen;
+  if (!(map.z() > 0.0)) {
+    result.is_behind = true;
+    return result;
+  }
+  Eigen::Matrix<double, 3, 2> derivatives;
+  derivatives.col(0) = map_from_screen_.col(0) + gradient.d_x * map_from_screen_.col(2);
+  derivatives.col(1) = map_from_screen_.col(1) + gradient.d_y * map_from_screen_.col(2);
+  result.texel = map.hnormalized();
+  const Eigen::Matrix2d J_map_screen =
+      (derivatives.topRows<2>() - result.texel * derivatives.row(2)) / map.z();
+  result.J_screen_map = J_map_screen.inverse();
+  if (!result.J_screen_map.allFinite() || !result.texel.allFinite()) return std::nullopt;
+  return result;
+}
+
+}  // namespace lightfit

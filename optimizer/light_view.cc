@@ -1,0 +1,196 @@
+#include "optimizer/light_view.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "absl/strings/str_format.h"
+#include "base/stop.h"
+#include "geometry/homography.h"
+#include "optimizer/energy/l1_weights.h"
+
+namespace lightfit {
+
+namespace {
+
+absl::Status TooFewSamplesError(const Light& light, const SampleCounts& counts, int min_samples) {
+  if (counts.candidates == 0) {
+    return absl::FailedPreconditionError(absl::StrFormat(
+        "light \"%s\": no shadow boundary among %d receivers: all are lit, or all are shadowed, so "
+        "there is nothing to fit. Leave the light out, or take its focused map (search kFocused, "
+        "--search focused)",
+        light.name,
+        counts.receivers));
+  }
+  return absl::FailedPreconditionError(absl::StrFormat(
+      "light \"%s\": %d usable samples, want at least %d; of %d boundary pixels %d are background, "
+      "%d at depth discontinuities, %d face away from the light, %d are edge-on. Use a larger "
+      "read-back, or take the focused map (search kFocused, --search focused)",
+      light.name,
+      counts.used,
+      min_samples,
+      counts.candidates,
+      counts.background,
+      counts.discontinuity,
+      counts.facing_away,
+      counts.edge_on));
+}
+
+// The largest and smallest w over the hull, where w is 1 at the origin of the rays.
+std::pair<double, double> RangeOfW(const Polygon& hull, const Eigen::Vector3d& axis) {
+  std::pair<double, double> range = {std::numeric_limits<double>::infinity(), 0.0};
+  for (const Eigen::Vector2d& ray : hull) {
+    const double w = axis.dot(ray.homogeneous());
+    range = {std::min(range.first, w), std::max(range.second, w)};
+  }
+  return range;
+}
+
+// The same over all rays that land in the map, which may be more than the hull: lit receivers among
+// them must not be clipped. Where the warp leaves no bound the hull's is stretched: the lower one
+// by little, as the depth of a directional light pays for it; the upper one, of a point light, by
+// much, as 1 / w hardly does.
+std::pair<double, double> RangeOfWOverMap(MapSize map,
+                                          const Eigen::Matrix3d& map_from_normalized,
+                                          double w_min,
+                                          double w_max) {
+  constexpr double kMostStretchBelow = 16.0, kMostStretchAbove = 1e6;
+  const Eigen::Matrix3d normalized_from_map = map_from_normalized.inverse();
+  std::pair<double, double> range = {w_min, w_max};
+  for (const double u : {0.0, static_cast<double>(map.width)}) {
+    for (const double v : {0.0, static_cast<double>(map.height)}) {
+      // The ray with w = 1 there; its third component says what w is when that is 1.
+      const double z = normalized_from_map.row(2).dot(Eigen::Vector3d(u, v, 1.0));
+      const double w = z > 0.0 ? 1.0 / z : std::numeric_limits<double>::infinity();
+      range = {std::min(range.first, w), std::max(range.second, w)};
+    }
+  }
+  return {std::max(range.first, w_min / kMostStretchBelow),
+          std::min(range.second, w_max * kMostStretchAbove)};
+}
+
+// Seen from the light the map must not be mirrored, or triangles change their facing.
+Eigen::Matrix3d Unmirrored(Eigen::Matrix3d map_from_ray, MapSize map) {
+  if (map_from_ray.determinant() < 0.0) {
+    map_from_ray.row(1) = map.height * map_from_ray.row(2) - map_from_ray.row(1);
+  }
+  return map_from_ray;
+}
+
+// The matrix of a map, with a depth row laid over the receivers, and its footprints.
+absl::StatusOr<LightMatrix> LayMatrix(const SearchInputs& inputs,
+                                      const Eigen::Matrix3d& map_from_normalized,
+                                      MapSize map,
+                                      const FitOptions& options) {
+  const Summary& summary = inputs.summary;
+  const Light& light = inputs.light;
+  const Eigen::Vector3d axis = map_from_normalized.row(2);
+  const auto [w_min, w_max] = RangeOfW(summary.cover.hull, axis);
+  if (!(w_min > 0.0)) {
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "light \"%s\": the map has w <= 0 on a ray that it must cover", light.name));
+  }
+  const auto [w_min_map, w_max_map] = options.cover == Cover::kShadowed
+                                          ? RangeOfWOverMap(map, map_from_normalized, w_min, w_max)
+                                          : std::pair(w_min, w_max);
+  DepthRange depth = summary.cover.depth;
+  if (light.kind == Light::Kind::kPoint) {
+    // w of a receiver is its depth times that of its ray.
+    depth = {depth.near * w_min, depth.far * w_max_map};
+  }
+  LightMatrix matrix;
+  matrix.light_name = light.name;
+  matrix.map = map;
+  matrix.map_from_world = MapFromWorld(map_from_normalized * summary.cover.normalized_from_ray,
+                                       RayFromWorld(light),
+                                       light,
+                                       depth,
+                                       w_min_map);
+  if (!matrix.map_from_world.allFinite()) {
+    return absl::InternalError(
+        absl::StrFormat("light \"%s\": the matrix is not finite; please report this", light.name));
+  }
+  matrix.samples = summary.counts;
+  if (inputs.samples != nullptr && options.compute_statistics) {
+    matrix.footprint =
+        ComputeFootprintStatistics(map_from_normalized, *inputs.samples, options.stop);
+  } else if (summary.counts.used > 0 && options.metric == Metric::kL2) {
+    const double energy = summary.tensor.Energy(map_from_normalized);
+    matrix.footprint.rms = std::sqrt(std::max(0.0, 0.5 * energy / summary.total_weight));
+  }
+  return matrix;
+}
+
+}  // namespace
+
+absl::StatusOr<PreparedLight> PrepareLight(const Receivers& receivers,
+                                           const Light& light,
+                                           const FitOptions& options) {
+  absl::StatusOr<RayCover> cover = CoverReceivers(receivers, light, options.cover, options.stop);
+  if (!cover.ok()) return cover.status();
+  const MetricWeights metric = WeightsOf(options.metric, options.along_edge_share);
+  PreparedLight prepared;
+  prepared.samples = SelectSamples(receivers,
+                                   light,
+                                   cover->normalized_from_ray,
+                                   /*with_edge_normals=*/metric.across_edge > 0.0,
+                                   options.stop);
+  prepared.summary = SummarizeSamples(prepared.samples, *cover, metric, options.stop);
+  if (absl::Status status = CheckStop(options.stop, light); !status.ok()) return status;
+  return prepared;
+}
+
+absl::StatusOr<LightMatrix> FitInputs(const SearchInputs& inputs,
+                                      MapSize map,
+                                      const FitOptions& options) {
+  const Summary& summary = inputs.summary;
+  const Light& light = inputs.light;
+  if (absl::Status status = CheckStop(options.stop, light); !status.ok()) return status;
+  if (options.search != Search::kFocused && summary.counts.used < options.samples.min_samples) {
+    return TooFewSamplesError(light, summary.counts, options.samples.min_samples);
+  }
+  absl::StatusOr<SearchOutcome> outcome = SearchAxis(inputs, map, options);
+  if (!outcome.ok()) return outcome.status();
+  const Eigen::Matrix3d map_from_normalized = Unmirrored(outcome->result.fit.map_from_ray, map);
+  absl::StatusOr<LightMatrix> matrix = LayMatrix(inputs, map_from_normalized, map, options);
+  if (absl::Status status = CheckStop(options.stop, light); !status.ok()) return status;
+  if (!matrix.ok()) return matrix.status();
+  matrix->energy = outcome->result.fit.energy;
+  matrix->energy_start = outcome->energy_start;
+  matrix->evaluations = outcome->evaluations;
+  matrix->trace = std::move(outcome->result.trace);
+  matrix->solver_report = std::move(outcome->solver_report);
+  matrix->stop_reason = outcome->result.stop_reason;
+  const double w_min = RangeOfW(summary.cover.hull, map_from_normalized.row(2)).first;
+  const bool searched = options.search != Search::kFocused;
+  if (searched && w_min <= options.min_w * (1.0 + 1e-3)) {
+    matrix->stop_reason = StopReason::kAxisAtLimit;
+  }
+  return matrix;
+}
+
+absl::StatusOr<LightMatrix> MatrixOfMap(const SearchInputs& inputs,
+                                        const Eigen::Matrix3d& map_from_normalized,
+                                        MapSize map,
+                                        const FitOptions& options) {
+  absl::StatusOr<LightMatrix> matrix =
+      LayMatrix(inputs, Unmirrored(map_from_normalized, map), map, options);
+  if (!matrix.ok()) return matrix;
+  if (inputs.summary.counts.used > 0) {
+    matrix->energy =
+        IsL1(options.metric) && inputs.samples != nullptr
+            ? WeightsForL1(
+                  *inputs.samples, inputs.summary.metric, map_from_normalized, options.stop)
+                  .footprint_sum
+            : inputs.summary.tensor.Energy(map_from_normalized);
+    matrix->energy_start = matrix->energy;
+    matrix->stop_reason = StopReason::kNoSearch;
+  }
+  if (absl::Status status = CheckStop(options.stop, inputs.light); !status.ok()) return status;
+  return matrix;
+}
+
+}  // namespace lightfit

@@ -1,0 +1,235 @@
+#include "optimizer/readback/cover.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "absl/strings/str_format.h"
+#include "base/scratch.h"
+#include "base/stop.h"
+#include "geometry/convex_hull.h"
+#include "geometry/ray_cone.h"
+#include "optimizer/readback/cover_hull.h"
+#include "optimizer/readback/covered_surfaces.h"
+
+namespace lightfit {
+
+namespace {
+
+absl::Status FlatError(const Light& light) {
+  return absl::FailedPreconditionError(absl::StrFormat(
+      "light \"%s\": all receivers lie in one plane with the light (or are one point), so that its "
+      "map would have no area. Is the surface edge-on to the light? Then it shows no shadow",
+      light.name));
+}
+
+// An axis that has all boxes of the grid in front of it.
+std::optional<Eigen::Vector3d> AxisOfBoxes(const TileGrid& grid,
+                                           const Matrix34d& ray_from_screen,
+                                           const std::stop_token& stop) {
+  ScratchVector<Eigen::Vector3d> rays;
+  rays.reserve(8 * grid.tiles.size());
+  ForEachTile(grid, stop, [&](const DepthTile& tile) {
+    for (const Eigen::Vector4d& corner : Corners(tile)) rays.push_back(ray_from_screen * corner);
+  });
+  return FeasibleAxis(rays, stop);
+}
+
+Eigen::Vector3d MeanRay(const TileGrid& grid,
+                        const Matrix34d& ray_from_screen,
+                        const std::stop_token& stop) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  ForEachTile(grid, stop, [&](const DepthTile& tile) {
+    const Eigen::Vector4d middle(0.5 * (tile.x_begin + tile.x_end),
+                                 0.5 * (tile.y_begin + tile.y_end),
+                                 0.5 * (tile.d_min + tile.d_max),
+                                 1.0);
+    sum += tile.num_surfaces * (ray_from_screen * middle).normalized();
+  });
+  return sum.normalized();
+}
+
+// The boxes that hold rays close to the covered ones, in four times their square, and perhaps some
+// more: all but those whose corners lie beyond one and the same side of it.
+TileGrid BoxesAlong(const TileGrid& grid,
+                    const Matrix34d& normalized_from_screen,
+                    const std::stop_token& stop) {
+  constexpr double kCloseBy = 4.0;
+  TileGrid close;
+  ForEachTile(grid, stop, [&](const DepthTile& tile) {
+    // Bits: which sides all corners seen so far are beyond.
+    unsigned beyond = 0xf;
+    for (const Eigen::Vector4d& corner : Corners(tile)) {
+      const Eigen::Vector3d ray = normalized_from_screen * corner;
+      const double limit = kCloseBy * ray.z();
+      beyond &= (ray.x() > limit ? 1u : 0u) | (-ray.x() > limit ? 2u : 0u) |
+                (ray.y() > limit ? 4u : 0u) | (-ray.y() > limit ? 8u : 0u);
+    }
+    if (beyond == 0) close.tiles.push_back(tile);
+  });
+  return close;
+}
+
+// A linear function of the world point, on the screen.
+struct DepthOnScreen {
+  Eigen::RowVector4d depth_from_screen, scale_from_screen;
+
+  double At(const Eigen::Vector4d& screen) const {
+    return depth_from_screen.dot(screen) / scale_from_screen.dot(screen);
+  }
+};
+
+constexpr DepthRange kNoDepth = {std::numeric_limits<double>::infinity(),
+                                 -std::numeric_limits<double>::infinity()};
+
+DepthRange Extended(const DepthRange& range, double depth) {
+  return {std::min(range.near, depth), std::max(range.far, depth)};
+}
+
+// Extreme at corners.
+DepthRange RangeOverBox(const DepthTile& tile, const DepthOnScreen& depth, DepthRange range) {
+  for (const Eigen::Vector4d& corner : Corners(tile)) range = Extended(range, depth.At(corner));
+  return range;
+}
+
+DepthRange RangeOverBoxes(const TileGrid& grid,
+                          const DepthOnScreen& depth,
+                          const std::stop_token& stop) {
+  DepthRange range = kNoDepth;
+  ForEachTile(grid, stop, [&](const DepthTile& tile) { range = RangeOverBox(tile, depth, range); });
+  return range;
+}
+
+DepthRange RangeOverReceivers(const CoveredSurfaces& covered, const DepthOnScreen& depth) {
+  DepthRange range = kNoDepth;
+  ForEachTile(covered.tiles.grids[0], covered.stop, [&](const DepthTile& tile) {
+    const DepthRange with_box = RangeOverBox(tile, depth, range);
+    if (with_box.near == range.near && with_box.far == range.far) return;
+    covered.ForEach(tile, [&](const Eigen::Vector4d& receiver) {
+      range = Extended(range, depth.At(receiver));
+    });
+  });
+  return range;
+}
+
+}  // namespace
+
+absl::Status SurroundedError(const Light& light) {
+  return absl::FailedPreconditionError(absl::StrFormat(
+      "light \"%s\": at (%g, %g, %g) it hangs among its receivers: no single map has all of them "
+      "in "
+      "front of it. Render its shadow with a cube map or a dual paraboloid map, split the "
+      "receivers "
+      "into several maps, or leave receivers that it does not light out of the read-back",
+      light.name,
+      light.position.x(),
+      light.position.y(),
+      light.position.z()));
+}
+
+absl::StatusOr<RayCover> CoverReceivers(const Receivers& receivers,
+                                        const Light& light,
+                                        Cover which,
+                                        const std::stop_token& stop) {
+  DepthTiles shadowed;
+  if (which == Cover::kShadowed) {
+    shadowed = BuildDepthTiles(
+        receivers.readback, receivers.affine_depth, {uint32_t{1} << light.shadow_bit}, stop);
+  }
+  if (absl::Status status = CheckStop(stop, light); !status.ok()) return status;
+  const bool covers_all = shadowed.num_surfaces == 0;
+  const CoveredSurfaces covered = {receivers, covers_all ? receivers.tiles : shadowed, stop};
+  const DepthTiles& tiles = covered.tiles;
+  const Matrix34d ray_from_screen = RayFromWorld(light) * receivers.world_from_screen;
+  RayCover cover;
+  cover.nothing_shadowed = which == Cover::kShadowed && covers_all;
+  Eigen::Matrix3d frame_from_ray = Eigen::Matrix3d::Identity();
+  DepthOnScreen depth;
+  depth.scale_from_screen = receivers.world_from_screen.row(3);
+  bool one_by_one = false;
+  if (light.kind == Light::Kind::kPoint) {
+    // Few, coarse boxes will do unless they reach around the light where finer ones do not.
+    std::optional<Eigen::Vector3d> axis;
+    for (size_t level = std::min<size_t>(1, tiles.grids.size() - 1) + 1; level-- > 0;) {
+      axis = AxisOfBoxes(tiles.grids[level], ray_from_screen, stop);
+      if (axis.has_value()) break;
+    }
+    if (axis.has_value()) {
+      cover.mean_ray = MeanRay(tiles.grids[0], ray_from_screen, stop);
+    } else {
+      // Look at every receiver, unless a few of them surround the light already.
+      ScratchVector<Eigen::Vector3d> some_rays;
+      for (const Eigen::Vector4d& receiver : OneReceiverPerTile(covered, 0)) {
+        some_rays.push_back(ray_from_screen * receiver);
+      }
+      if (FeasibleAxis(some_rays, stop).has_value()) {
+        one_by_one = true;
+        const UnitRaySum sum = SumOfUnitRays(covered, ray_from_screen);
+        axis = FeasibleAxis(sum, [&](const Eigen::Vector3d& along) {
+          return LowestOfUnitRays(covered, ray_from_screen, along);
+        });
+        cover.mean_ray = sum.sum.normalized();
+      }
+    }
+    if (absl::Status status = CheckStop(stop, light); !status.ok()) return status;
+    if (!axis.has_value()) return SurroundedError(light);
+    frame_from_ray = FrameAlong(*axis);
+    depth.depth_from_screen = frame_from_ray.row(2) * ray_from_screen;
+  } else {
+    depth.depth_from_screen =
+        light.direction.stableNormalized().transpose() * receivers.world_from_screen.topRows<3>();
+  }
+  cover.depth =
+      one_by_one ? RangeOverReceivers(covered, depth) : RangeOverBoxes(tiles.grids[0], depth, stop);
+
+  cover.hull = ExactHull(covered, frame_from_ray * ray_from_screen);
+  if (absl::Status status = CheckStop(stop, light); !status.ok()) return status;
+  const std::optional<Eigen::Matrix3d> normalized = NormalizeRays(frame_from_ray, &cover.hull);
+  if (!normalized.has_value()) {
+    // A single shadowed pixel, or a row of them, has no area, which is as good as no shadow.
+    return covers_all ? FlatError(light)
+                      : CoverReceivers(receivers, light, Cover::kReceivers, stop);
+  }
+  cover.normalized_from_ray = *normalized;
+  if (!covers_all) {
+    // What is lit may land in the map too, behind all that is shadowed.
+    const TileGrid close =
+        BoxesAlong(receivers.tiles.grids[0], *normalized * ray_from_screen, stop);
+    cover.depth.far = std::max(cover.depth.far, RangeOverBoxes(close, depth, stop).far);
+    if (absl::Status status = CheckStop(stop, light); !status.ok()) return status;
+  }
+  return cover;
+}
+
+absl::StatusOr<RayCover> CoverRays(absl::Span<const Eigen::Vector3d> rays,
+                                   DepthRange depth,
+                                   const Eigen::Vector3d& mean_ray,
+                                   const Light& light) {
+  RayCover cover;
+  cover.depth = depth;
+  Eigen::Matrix3d frame_from_ray = Eigen::Matrix3d::Identity();
+  if (light.kind == Light::Kind::kPoint) {
+    const std::optional<Eigen::Vector3d> axis = FeasibleAxis(rays);
+    if (!axis.has_value()) return SurroundedError(light);
+    frame_from_ray = FrameAlong(*axis);
+    // A receiver at some distance is nearer than that along the axis, by its ray's cosine.
+    double min_cos = 1.0;
+    for (const Eigen::Vector3d& ray : rays)
+      min_cos = std::min(min_cos, axis->dot(ray) / ray.norm());
+    cover.depth.near = depth.near * min_cos;
+    cover.mean_ray = mean_ray.squaredNorm() > 0.0 ? mean_ray.normalized() : *axis;
+  }
+  ScratchVector<Eigen::Vector2d> points;
+  points.reserve(rays.size());
+  for (const Eigen::Vector3d& ray : rays) points.push_back((frame_from_ray * ray).hnormalized());
+  cover.hull = ConvexHull(points);
+  const std::optional<Eigen::Matrix3d> normalized = NormalizeRays(frame_from_ray, &cover.hull);
+  if (!normalized.has_value()) return FlatError(light);
+  cover.normalized_from_ray = *normalized;
+  return cover;
+}
+
+}  // namespace lightfit

@@ -1,0 +1,18 @@
+// optimizer/readback/cover_hull.h
+//
+// The convex hull of the rays that one light's map must cover.
+// In:   CoveredSurfaces, a frame.
+// Out:  the hull, seen along the frame's third axis.
+#pragma once
+
+#include "geometry/polygon.h"
+#include "optimizer/readback/covered_surfaces.h"
+
+namespace lightfit {
+
+// That of the rays through the centres of all pixels to cover, exactly, as (x/z, y/z). All must
+// have z > 0. Looks only into tiles whose box reaches out of the hull found so far. Of no use once
+// `covered.stop` says so.
+Polygon ExactHull(const CoveredSurfaces& covered, const Matrix34d& frame_from_screen);
+
+}  // namespace lightfit

@@ -1,0 +1,22 @@
+// optimizer/readback/sample_counts.h
+//
+// Where the candidate samples of one light went.
+#pragma once
+
+#include <cstdint>
+
+namespace lightfit {
+
+// Counts of read-back pixels.
+struct SampleCounts {
+  int64_t receivers = 0;      // pixels with a surface
+  int64_t invalid_depth = 0;  // pixels with NaN, negative or out-of-range depth: ignored
+  int64_t candidates = 0;     // pixels whose shadow bit differs from a neighbour's
+  int64_t background = 0;     // candidates without a surface
+  int64_t discontinuity = 0;  // candidates at a depth discontinuity
+  int64_t facing_away = 0;    // candidates whose surface, or whose lit side, faces away
+  int64_t edge_on = 0;        // candidates edge-on to the light or the eye
+  int64_t used = 0;           // candidates - all of the above but receivers, invalid_depth
+};
+
+}  // namespace lightfit

@@ -1,0 +1,165 @@
+#include "optimizer/readback/samples.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "base/stop.h"
+#include "optimizer/readback/edge_normals.h"
+
+namespace lightfit {
+
+Sample Samples::At(size_t i) const {
+  const Eigen::Vector3d X = ray_from_screen * Eigen::Vector4d(x[i], y[i], d[i], 1.0);
+  // math.md (11): the ray's screen derivatives on the visible surface.
+  const Eigen::Vector3d T1 = ray_from_screen.col(0) + d_x[i] * ray_from_screen.col(2);
+  const Eigen::Vector3d T2 = ray_from_screen.col(1) + d_y[i] * ray_from_screen.col(2);
+  const double V = X.dot(T1.cross(T2));
+  Sample sample;
+  sample.X = X;
+  // math.md (1)
+  sample.D.row(0) = T2.cross(X) / V;
+  sample.D.row(1) = X.cross(T1) / V;
+  sample.weight = weight[i];
+  sample.edge_normal = has_edge_normals() ? Eigen::Vector2d(edge_normal_x[i], edge_normal_y[i])
+                                          : Eigen::Vector2d::Zero();
+  return sample;
+}
+
+namespace {
+
+enum class Facing : uint8_t { kAway, kEdgeOn, kTowards };
+
+Facing FacingOf(const BoundaryPixel& pixel, const Light& light, double min_cos_light) {
+  const Eigen::Vector3d to_light = light.kind == Light::Kind::kPoint
+                                       ? Eigen::Vector3d(light.position - pixel.position)
+                                       : Eigen::Vector3d(-light.direction.stableNormalized());
+  const double facing = pixel.normal.dot(to_light);
+  if (facing <= 0.0) return Facing::kAway;
+  // Also false for a light at the receiver, and for normals that are not finite.
+  const bool is_seen = !pixel.edge_on_to_eye && facing > min_cos_light * to_light.norm();
+  return is_seen ? Facing::kTowards : Facing::kEdgeOn;
+}
+
+// Tells shadow edges from terminators: the borders between shadow and surfaces that are turned away
+// from the light, whose bit is 0 because no shadow is looked up there.
+class Terminators {
+ public:
+  Terminators(const Receivers& receivers, uint32_t bit, const ScratchVector<Facing>& facing)
+      : receivers_(receivers), bit_(bit), facing_(facing) {
+    row_begin_.reserve(receivers.readback.height() + 1);
+    for (size_t i = 0; i < receivers.boundary.size(); ++i) {
+      while (static_cast<int>(row_begin_.size()) <= receivers.boundary[i].y) {
+        row_begin_.push_back(i);
+      }
+    }
+    row_begin_.resize(receivers.readback.height() + 1, receivers.boundary.size());
+  }
+
+  // Whether every neighbour without shadow of a shadowed pixel is turned away from the light.
+  bool Has(const BoundaryPixel& pixel) const {
+    if ((Word(pixel.x, pixel.y) & bit_) == 0) return false;
+    return IsShadowedOrAway(pixel.x - 1, pixel.y) && IsShadowedOrAway(pixel.x + 1, pixel.y) &&
+           IsShadowedOrAway(pixel.x, pixel.y - 1) && IsShadowedOrAway(pixel.x, pixel.y + 1);
+  }
+
+ private:
+  uint32_t Word(int x, int y) const {
+    return receivers_.readback
+        .shadow_bits[static_cast<size_t>(y) * receivers_.readback.width() + x];
+  }
+
+  // A neighbour without shadow is a boundary pixel itself, unless no plane is known there.
+  bool IsShadowedOrAway(int x, int y) const {
+    if ((Word(x, y) & bit_) != 0) return true;
+    const auto begin = receivers_.boundary.begin();
+    const auto found =
+        std::lower_bound(begin + row_begin_[y],
+                         begin + row_begin_[y + 1],
+                         x,
+                         [](const BoundaryPixel& pixel, int column) { return pixel.x < column; });
+    return found != begin + row_begin_[y + 1] && found->x == x &&
+           facing_[found - begin] == Facing::kAway;
+  }
+
+  const Receivers& receivers_;
+  uint32_t bit_;
+  const ScratchVector<Facing>& facing_;  // by boundary pixel
+  ScratchVector<size_t> row_begin_;      // in Receivers::boundary
+};
+
+}  // namespace
+
+Samples SelectSamples(const Receivers& receivers,
+                      const Light& light,
+                      const Eigen::Matrix3d& normalized_from_ray,
+                      bool with_edge_normals,
+                      const std::stop_token& stop) {
+  const uint32_t bit = uint32_t{1} << light.shadow_bit;
+  Samples samples;
+  samples.ray_from_screen = normalized_from_ray * RayFromWorld(light) * receivers.world_from_screen;
+  samples.counts = receivers.counts[light.shadow_bit];
+  for (auto* array : {&samples.x, &samples.y, &samples.d, &samples.d_x, &samples.d_y}) {
+    array->reserve(samples.counts.candidates);
+  }
+  const EdgeNormals edge_normals(
+      receivers.readback, receivers.affine_depth, light.shadow_bit, receivers.options.edge_window);
+  ScratchVector<Facing> facing;
+  facing.reserve(receivers.boundary.size());
+  for (const BoundaryPixel& pixel : receivers.boundary) {
+    if (IsStopped(stop, facing.size())) return samples;
+    const bool is_candidate = (pixel.lights & bit) != 0;
+    facing.push_back(is_candidate ? FacingOf(pixel, light, receivers.options.min_cos_light)
+                                  : Facing::kTowards);
+  }
+  const Terminators terminators(receivers, bit, facing);
+  for (size_t i = 0; i < receivers.boundary.size() && !IsStopped(stop, i); ++i) {
+    const BoundaryPixel& pixel = receivers.boundary[i];
+    if ((pixel.lights & bit) == 0) continue;
+    if (facing[i] == Facing::kAway ||
+        (!receivers.options.use_terminators && terminators.Has(pixel))) {
+      ++samples.counts.facing_away;
+      continue;
+    }
+    if (facing[i] == Facing::kEdgeOn) {
+      ++samples.counts.edge_on;
+      continue;
+    }
+    samples.x.push_back(pixel.x + 0.5);
+    samples.y.push_back(pixel.y + 0.5);
+    samples.d.push_back(pixel.d);
+    samples.d_x.push_back(pixel.d_x);
+    samples.d_y.push_back(pixel.d_y);
+    if (with_edge_normals) {
+      const Eigen::Vector2d normal = edge_normals.At(pixel.x, pixel.y);
+      samples.edge_normal_x.push_back(normal.x());
+      samples.edge_normal_y.push_back(normal.y());
+    }
+  }
+  samples.weight.assign(samples.size(), 1.0);
+  samples.counts.used = static_cast<int64_t>(samples.size());
+  return samples;
+}
+
+Samples SamplesInFront(const Samples& samples,
+                       const Eigen::RowVector3d& axis,
+                       const std::stop_token& stop) {
+  Samples front;
+  front.ray_from_screen = samples.ray_from_screen;
+  front.counts = samples.counts;
+  for (size_t i = 0; i < samples.size() && !IsStopped(stop, i); ++i) {
+    if (!(axis.dot(samples.At(i).X) > 0.0)) continue;
+    front.x.push_back(samples.x[i]);
+    front.y.push_back(samples.y[i]);
+    front.d.push_back(samples.d[i]);
+    front.d_x.push_back(samples.d_x[i]);
+    front.d_y.push_back(samples.d_y[i]);
+    front.weight.push_back(samples.weight[i]);
+    if (!samples.has_edge_normals()) continue;
+    front.edge_normal_x.push_back(samples.edge_normal_x[i]);
+    front.edge_normal_y.push_back(samples.edge_normal_y[i]);
+  }
+  return front;
+}
+
+}  // namespace lightfit

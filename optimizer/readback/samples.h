@@ -1,0 +1,56 @@
+// optimizer/readback/samples.h
+//
+// The samples of one light: pixels near its shadow boundary, with all that the energy needs.
+// In:   Receivers, Light, the coordinates of the rays.
+// Out:  Samples, a structure of arrays that the summary kernel reads, and single Samples {X, D}.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <stop_token>
+
+#include "base/scratch.h"
+#include "geometry/light.h"
+#include "optimizer/readback/surfaces.h"
+
+namespace lightfit {
+
+// One sample in full: the reference form.   math.md (1) and (11)
+struct Sample {
+  Eigen::Vector3d X;              // ray, along the light's rays
+  Eigen::Matrix<double, 2, 3> D;  // d(screen)/d(ray), pixels per unit of ray; D X = 0
+  double weight;
+  Eigen::Vector2d edge_normal;  // of the shadow's edge on the screen, unit, or 0 if not known
+};
+
+struct Samples {
+  // X = ray_from_screen (x, y, d, 1), in whatever coordinates of rays the caller chose.
+  Eigen::Matrix<double, 3, 4> ray_from_screen;
+
+  // One entry per sample: screen position (pixel centres at +0.5), affine depth and derivatives.
+  ScratchVector<double> x, y, d, d_x, d_y;
+  ScratchVector<double> weight;
+  ScratchVector<double> edge_normal_x, edge_normal_y;  // empty unless asked for
+
+  SampleCounts counts;
+
+  size_t size() const { return x.size(); }
+  bool has_edge_normals() const { return !edge_normal_x.empty(); }
+  Sample At(size_t i) const;
+};
+
+// The light's share of the receivers' boundary: those that face the light, are not edge-on to it or
+// to the eye. `normalized_from_ray` acts on RayFromWorld(light); the identity keeps light space.
+// Here and below: of no use once `stop` says so.
+Samples SelectSamples(const Receivers& receivers,
+                      const Light& light,
+                      const Eigen::Matrix3d& normalized_from_ray,
+                      bool with_edge_normals,
+                      const std::stop_token& stop = {});
+
+// Those with w = p.X > 0, in the order they had. `counts` are as they were.
+Samples SamplesInFront(const Samples& samples,
+                       const Eigen::RowVector3d& axis,
+                       const std::stop_token& stop = {});
+
+}  // namespace lightfit

@@ -1,0 +1,172 @@
+#include "optimizer/readback/surfaces.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <optional>
+
+#include "absl/strings/str_format.h"
+#include "base/stop.h"
+#include "geometry/affine_depth.h"
+#include "optimizer/readback/kernels.h"
+
+namespace lightfit {
+
+namespace {
+
+absl::Status NoReceiversError(const Readback& readback, int64_t num_invalid, int64_t num_pixels) {
+  if (num_invalid == 0) {
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "readback.depth: all %d pixels are background, want at least one surface (depth kind %s)",
+        num_pixels,
+        DepthKindName(readback.depth_kind)));
+  }
+  return absl::InvalidArgumentError(absl::StrFormat(
+      "readback.depth: no surface; %d of %d pixels are NaN, negative or out of range for depth "
+      "kind "
+      "%s (the first value is %g). Is this the depth channel, and is its depth kind right?",
+      num_invalid,
+      num_pixels,
+      DepthKindName(readback.depth_kind),
+      readback.depth[0]));
+}
+
+}  // namespace
+
+bool DepthGradientAt(const Readback& readback,
+                     const AffineDepth& affine_depth,
+                     const SampleOptions& options,
+                     int x,
+                     int y,
+                     DepthGradient* gradient) {
+  const int width = readback.width();
+  if (x < 1 || y < 1 || x + 1 >= width || y + 1 >= readback.height()) return false;
+  const float* centre = readback.depth.data() + static_cast<size_t>(y) * width + x;
+  if (!affine_depth.IsSurface(*centre)) return false;
+  const double d = affine_depth.At(x, y, *centre);
+  // How much deeper the pixel `steps` away along (dx, dy) is than this one.
+  const auto rise = [&](int dx, int dy, int steps) -> std::optional<double> {
+    const int px = x + steps * dx, py = y + steps * dy;
+    if (px < 0 || py < 0 || px >= width || py >= readback.height()) return std::nullopt;
+    const float depth = readback.depth[static_cast<size_t>(py) * width + px];
+    if (!affine_depth.IsSurface(depth)) return std::nullopt;
+    return affine_depth.At(px, py, depth) - d;
+  };
+  const double noise = options.depth_noise * std::abs(d);
+  const auto derivative = [&](int dx, int dy) -> std::optional<double> {
+    const std::optional<double> back = rise(dx, dy, -1), ahead = rise(dx, dy, 1);
+    if (back.has_value() && ahead.has_value()) {
+      const double second = std::abs(*back + *ahead);
+      const double first = std::max(std::abs(*back), std::abs(*ahead));
+      const bool bends = second > options.max_depth_bend * first && second > noise;
+      if (!bends) return 0.5 * (*ahead - *back);
+    }
+    if (!options.use_outlines) return std::nullopt;
+    if (!back.has_value() || !ahead.has_value()) {
+      return back.has_value() ? std::optional<double>(-*back) : ahead;
+    }
+    // The side that goes on as it begins is the surface's own; else the one nearer in depth.
+    const std::optional<double> back_twice = rise(dx, dy, -2), ahead_twice = rise(dx, dy, 2);
+    double back_misfit = std::abs(*back), ahead_misfit = std::abs(*ahead);
+    if (back_twice.has_value() && ahead_twice.has_value()) {
+      back_misfit = std::abs(*back_twice - 2.0 * *back);
+      ahead_misfit = std::abs(*ahead_twice - 2.0 * *ahead);
+    }
+    return back_misfit < ahead_misfit ? -*back : *ahead;
+  };
+  const std::optional<double> d_x = derivative(1, 0);
+  const std::optional<double> d_y = derivative(0, 1);
+  if (!d_x.has_value() || !d_y.has_value()) return false;
+  *gradient = {d, *d_x, *d_y};
+  return true;
+}
+
+Eigen::Vector3d SurfaceNormal(const Eigen::Matrix4d& screen_from_world,
+                              bool orthographic,
+                              int x,
+                              int y,
+                              const DepthGradient& gradient) {
+  // The plane d = d0 + d_x (x - x0) + d_y (y - y0), as a covector on (x, y, d, 1) and then on world
+  // points. Its value at the eye is negative for a perspective camera (whose eye is at d =
+  // infinity) and positive for an orthographic one (d = -infinity).
+  const Eigen::Vector4d plane_in_screen(
+      gradient.d_x,
+      gradient.d_y,
+      -1.0,
+      gradient.d - gradient.d_x * (x + 0.5) - gradient.d_y * (y + 0.5));
+  const Eigen::Vector3d normal = screen_from_world.leftCols<3>().transpose() * plane_in_screen;
+  return (orthographic ? 1.0 : -1.0) * normal.normalized();
+}
+
+absl::StatusOr<Receivers> FindReceivers(const Readback& readback,
+                                        uint32_t light_mask,
+                                        const SampleOptions& options,
+                                        const std::stop_token& stop) {
+  if (absl::Status status = ValidateReadback(readback); !status.ok()) return status;
+  constexpr char kSubject[] = "readback";
+  const int width = readback.width();
+  const int height = readback.height();
+  Receivers receivers(readback, options);
+  const AffineDepth& affine_depth = receivers.affine_depth;
+  receivers.tiles = BuildDepthTiles(readback, affine_depth, SurfaceFilter(), stop);
+  if (absl::Status status = CheckStop(stop, kSubject); !status.ok()) return status;
+  const int64_t num_receivers = receivers.tiles.num_surfaces;
+  const int64_t num_pixels = static_cast<int64_t>(width) * height;
+  const int64_t num_invalid = num_pixels - num_receivers - receivers.tiles.num_background;
+  if (num_receivers == 0) return NoReceiversError(readback, num_invalid, num_pixels);
+  for (SampleCounts& counts : receivers.counts) {
+    counts.receivers = num_receivers;
+    counts.invalid_depth = num_invalid;
+  }
+
+  const Eigen::Matrix4d screen_from_world = receivers.world_from_screen.inverse();
+  const Eigen::Vector3d eye =
+      receivers.world_from_screen.block<3, 1>(0, 2) /
+      (readback.camera.orthographic ? 1.0 : receivers.world_from_screen(3, 2));
+  ScratchVector<int32_t> columns(width);
+  for (int y = 1; y + 1 < height; ++y) {
+    if (absl::Status status = CheckStop(stop, kSubject); !status.ok()) return status;
+    const uint32_t* row = readback.shadow_bits.data() + static_cast<size_t>(y) * width;
+    const size_t num_columns =
+        internal::ScanBoundary(row, width, width, light_mask, columns.data());
+    for (size_t i = 0; i < num_columns; ++i) {
+      BoundaryPixel pixel;
+      const int x = columns[i];
+      pixel.x = x;
+      pixel.y = y;
+      pixel.lights = light_mask & ((row[x] ^ row[x - 1]) | (row[x] ^ row[x + 1]) |
+                                   (row[x] ^ row[x - width]) | (row[x] ^ row[x + width]));
+      DepthGradient gradient;
+      const bool is_surface =
+          affine_depth.IsSurface(readback.depth[static_cast<size_t>(y) * width + x]);
+      const bool continues =
+          is_surface && DepthGradientAt(readback, affine_depth, options, x, y, &gradient);
+      for (uint32_t bits = pixel.lights; bits != 0; bits &= bits - 1) {
+        SampleCounts& counts = receivers.counts[std::countr_zero(bits)];
+        ++counts.candidates;
+        if (!is_surface) {
+          ++counts.background;
+        } else if (!continues) {
+          ++counts.discontinuity;
+        }
+      }
+      if (!continues) continue;
+      pixel.d = gradient.d;
+      pixel.d_x = gradient.d_x;
+      pixel.d_y = gradient.d_y;
+      const Eigen::Vector4d position =
+          receivers.world_from_screen * Eigen::Vector4d(x + 0.5, y + 0.5, gradient.d, 1.0);
+      pixel.position = position.head<3>() / position.w();
+      pixel.normal = SurfaceNormal(screen_from_world, readback.camera.orthographic, x, y, gradient);
+      const Eigen::Vector3d to_eye = readback.camera.orthographic
+                                         ? Eigen::Vector3d(-eye)
+                                         : Eigen::Vector3d(eye - pixel.position);
+      pixel.edge_on_to_eye = !(pixel.normal.dot(to_eye) >= options.min_cos_eye * to_eye.norm());
+      receivers.boundary.push_back(pixel);
+    }
+  }
+  return receivers;
+}
+
+}  // namespace lightfit

@@ -1,0 +1,84 @@
+// optimizer/readback/surfaces.h
+//
+// What a read-back says before any light is looked at: computed once, used by every light.
+// In:   Readback, SampleOptions.
+// Out:  depth tiles that bound all receivers, and the pixels at a shadow boundary of any light with
+//       their position, affine depth derivatives and surface normal.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <stop_token>
+
+#include "absl/status/statusor.h"
+#include "base/scratch.h"
+#include "geometry/affine_depth.h"
+#include "geometry/light.h"
+#include "optimizer/readback/depth_tiles.h"
+#include "optimizer/readback/readback.h"
+#include "optimizer/readback/sample_counts.h"
+#include "optimizer/readback/sample_options.h"
+
+namespace lightfit {
+
+// A pixel at a shadow boundary of some light, on a surface whose plane its neighbours tell.
+struct BoundaryPixel {
+  int x, y;                  // column and row
+  uint32_t lights;           // bits that differ from a neighbour's
+  double d;                  // affine depth at the pixel's centre
+  double d_x, d_y;           // its screen derivatives, per pixel: exact on a plane
+  Eigen::Vector3d position;  // world
+  Eigen::Vector3d normal;    // of the surface, unit, towards the eye; world
+  bool edge_on_to_eye;       // by SampleOptions::min_cos_eye
+};
+
+struct Receivers {
+  Receivers(const Readback& readback, const SampleOptions& options)
+      : readback(readback),
+        options(options),
+        affine_depth(readback.camera, readback.depth_kind),
+        world_from_screen(readback.camera.WorldFromScreen()) {}
+
+  Readback readback;
+  SampleOptions options;
+  AffineDepth affine_depth;  // of the read-back's camera and depth kind
+  Eigen::Matrix4d world_from_screen;
+  DepthTiles tiles;                       // of all receivers
+  ScratchVector<BoundaryPixel> boundary;  // in pixel order
+  std::array<SampleCounts, kMaxLights>
+      counts;  // by shadow bit; used, facing_away, edge_on are 0 yet
+};
+
+// Looks at the shadow bits in `light_mask` only. Pixels in the outermost rows and columns have no
+// central differences and never count as boundary. InvalidArgument when the read-back is not valid
+// or has no receiver at all; CancelledError once `stop` says so.
+absl::StatusOr<Receivers> FindReceivers(const Readback& readback,
+                                        uint32_t light_mask,
+                                        const SampleOptions& options,
+                                        const std::stop_token& stop = {});
+
+// Affine depth and its derivatives at an inner pixel: central differences where the surface
+// continues to both sides (SampleOptions::max_depth_bend). At an outline or a crease, where it does
+// not, the difference to the side whose next pixel continues it best, or false without
+// SampleOptions::use_outlines.
+// False where there is no surface, or none on either side.
+struct DepthGradient {
+  double d, d_x, d_y;
+};
+bool DepthGradientAt(const Readback& readback,
+                     const AffineDepth& affine_depth,
+                     const SampleOptions& options,
+                     int x,
+                     int y,
+                     DepthGradient* gradient);
+
+// The unit normal, towards the eye, of the plane that has this affine depth gradient at the centre
+// of the pixel; world space.
+Eigen::Vector3d SurfaceNormal(const Eigen::Matrix4d& screen_from_world,
+                              bool orthographic,
+                              int x,
+                              int y,
+                              const DepthGradient& gradient);
+
+}  // namespace lightfit

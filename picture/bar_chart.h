@@ -1,0 +1,30 @@
+// picture/bar_chart.h
+//
+// Numbers as horizontal bars, one below the other.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "picture/canvas.h"
+#include "picture/text.h"
+
+namespace lightfit {
+
+struct Bar {
+  std::string name;
+  double value = 0.0;  // >= 0, finite
+  Rgb color;
+};
+
+// Fills the rectangle with the bars from its top, the longest as long as there is room beside names
+// and numbers.
+void DrawBarChart(int x,
+                  int y,
+                  int width,
+                  int height,
+                  const std::vector<Bar>& bars,
+                  const Typeface& typeface,
+                  Canvas* canvas);
+
+}  // namespace lightfit

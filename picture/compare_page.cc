@@ -1,0 +1,253 @@
+#include "picture/compare_page.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "base/number.h"
+#include "jobs/compare/totals.h"
+#include "picture/bar_chart.h"
+#include "picture/compare_choice.h"
+#include "picture/shadow_panel.h"
+#include "picture/theme.h"
+
+namespace lightfit {
+namespace {
+
+// Pixels.
+constexpr int kMargin = 36;
+constexpr int kGap = 18;
+constexpr int kTitleHeight = 92;
+constexpr int kHeaderHeight = 54;
+constexpr int kCropGap = 6;
+constexpr int kRowGap = 26;
+constexpr int kLegendHeight = 64;
+constexpr int kMaxPanel = 400;  // along the longer side
+constexpr int kFrameWidth = 2;
+
+constexpr int kTitleSize = 26;
+constexpr int kNameSize = 19;
+constexpr int kCaptionSize = 15;
+
+constexpr int kMaxColumns = 4;
+constexpr int kCropPixels = 62;  // about the crop's width in image pixels
+constexpr double kCropAspect = 0.62;
+
+struct Layout {
+  int reduced = 1, magnified = 1;  // image pixels to panel pixels; one of the two is 1
+  int panel_width = 0, panel_height = 0;
+  int crop_factor = 1;
+  CropBox crop;  // of the image
+  int columns = 1, rows = 1;
+
+  int cell_height() const {
+    return kHeaderHeight + panel_height + kCropGap + crop.height * crop_factor + kRowGap;
+  }
+  int width() const { return 2 * kMargin + columns * panel_width + (columns - 1) * kGap; }
+  int height() const { return kTitleHeight + rows * cell_height() + kLegendHeight; }
+};
+
+int ColumnsFor(int num_panels) {
+  if (num_panels <= kMaxColumns) return num_panels;
+  return num_panels <= 6 ? 3 : kMaxColumns;
+}
+
+Layout LayoutFor(int width, int height, int num_panels) {
+  Layout layout;
+  const int longer = std::max(width, height);
+  layout.magnified = std::max(1, kMaxPanel / longer);
+  while (longer > kMaxPanel * layout.reduced) ++layout.reduced;
+  layout.panel_width = (width * layout.magnified + layout.reduced - 1) / layout.reduced;
+  layout.panel_height = (height * layout.magnified + layout.reduced - 1) / layout.reduced;
+  layout.crop_factor = std::max(layout.magnified + 1, layout.panel_width / kCropPixels);
+  layout.crop.width = std::clamp(layout.panel_width / layout.crop_factor, 1, width);
+  layout.crop.height =
+      std::clamp(static_cast<int>(std::lround(kCropAspect * layout.crop.width)), 1, height);
+  layout.columns = ColumnsFor(num_panels);
+  layout.rows = (num_panels + layout.columns - 1) / layout.columns;
+  return layout;
+}
+
+class Page {
+ public:
+  Page(const CompareStage& stage,
+       const LightComparison& light,
+       const ComparePictureOptions& options,
+       const Layout& layout,
+       const Typeface& typeface)
+      : stage_(stage),
+        light_(light),
+        options_(options),
+        layout_(layout),
+        typeface_(typeface),
+        canvas_(layout.width(), layout.height(), kPageColor) {}
+
+  Canvas TakeCanvas() { return std::move(canvas_); }
+
+  void DrawTitle() {
+    Text(kMargin,
+         kMargin + 18,
+         absl::StrCat(options_.title, ", ", light_.light.name),
+         {.size_px = kTitleSize, .color = kTextColor, .bold = true});
+    const Camera& camera = stage_.screen.camera;
+    Text(kMargin,
+         kMargin + 44,
+         absl::StrFormat("screen %d x %d pixels, shadow map %d x %d texels; %s",
+                         camera.width,
+                         camera.height,
+                         options_.map.width,
+                         options_.map.height,
+                         options_.bias == Bias::kIdeal ? "ideal bias: sampling error alone"
+                                                       : "practical bias, as in a renderer"),
+         {.size_px = 16, .color = kFaintTextColor});
+  }
+
+  void DrawTruth() {
+    const LightingCounts& counts = light_.lighting;
+    const int64_t judged = counts.lit + counts.shadowed;
+    Header(
+        "truth",
+        absl::StrCat(PercentText(judged > 0 ? static_cast<double>(counts.shadowed) / judged : 0.0),
+                     " % of what faces the light in shadow"),
+        kTextColor);
+    DrawShadows(light_.truth);
+    ++cell_;
+  }
+
+  void DrawMap(const ComparedMap& map) {
+    const bool is_ours = &map == &light_.lightfit();
+    if (!HasImage(map)) {
+      Header(map.name, "no matrix", kWarningColor);
+      canvas_.FillRectangle(X(), PanelY(), layout_.panel_width, layout_.panel_height, kPanelColor);
+      int y = PanelY() + 30;
+      for (const std::string& line : typeface_.Wrapped(std::string(map.status.message()),
+                                                       layout_.panel_width - 24,
+                                                       {.size_px = kCaptionSize})) {
+        if (y > PanelY() + layout_.panel_height) break;
+        Text(X() + 12, y, line, {.size_px = kCaptionSize, .color = kFaintTextColor});
+        y += 22;
+      }
+      ++cell_;
+      return;
+    }
+    const int64_t count = CountOf(map, options_.bias);
+    std::string caption = absl::StrCat(count, count == 1 ? " wrong pixel" : " wrong pixels");
+    if (!is_ours && HasImage(light_.lightfit())) {
+      const absl::optional<double> ratio =
+          RatioOf(static_cast<double>(count),
+                  static_cast<double>(CountOf(light_.lightfit(), options_.bias)));
+      if (ratio.has_value()) absl::StrAppend(&caption, ", ", FigureText(*ratio), " x lightfit");
+    }
+    Header(map.name, caption, is_ours ? kGainColor : kTextColor);
+    DrawShadows(ShadowsOf(map, options_.bias));
+    ++cell_;
+  }
+
+  // In a cell that no method needs: how many wrong pixels each has.
+  void DrawBars(const std::vector<const ComparedMap*>& maps) {
+    if (cell_ >= layout_.columns * layout_.rows) return;
+    std::vector<Bar> bars;
+    for (const ComparedMap* map : maps) {
+      if (!HasImage(*map)) continue;
+      const Rgb color = map == &light_.lightfit() ? kGainColor : kReceiverColor;
+      bars.push_back({map->name, static_cast<double>(CountOf(*map, options_.bias)), color});
+    }
+    if (bars.empty()) return;
+    Header("all methods", "wrong pixels; fewer is better", kTextColor);
+    DrawBarChart(
+        X(), PanelY(), layout_.panel_width, layout_.panel_height, bars, typeface_, &canvas_);
+  }
+
+  void DrawLegend() {
+    int x = kMargin;
+    const int y = layout_.height() - kLegendHeight + 12;
+    canvas_.FillRectangle(kMargin, y - 14, layout_.width() - 2 * kMargin, 1, kRuleColor);
+    const ComparedMap* rival = Rival(light_, options_.bias);
+    const std::string crop =
+        absl::StrFormat("crop, %d times enlarged: where %s and lightfit differ most",
+                        layout_.crop_factor,
+                        rival == nullptr ? "a map" : rival->name);
+    for (const auto& [color, text] :
+         {std::pair{kFalseShadowColor, std::string("dark, should be lit")},
+          std::pair{kLightLeakColor, std::string("lit, should be dark")},
+          std::pair{kCropColor, crop}}) {
+      canvas_.FillRectangle(x, y + 3, 14, 14, color);
+      const TextStyle style = {.size_px = kCaptionSize, .color = kTextColor};
+      Text(x + 21, y + 15, text, style);
+      x += 21 + typeface_.Width(text, style) + 30;
+    }
+  }
+
+ private:
+  int X() const { return kMargin + (cell_ % layout_.columns) * (layout_.panel_width + kGap); }
+  int PanelY() const {
+    return kTitleHeight + (cell_ / layout_.columns) * layout_.cell_height() + kHeaderHeight;
+  }
+
+  void Text(int x, int baseline, absl::string_view text, const TextStyle& style) {
+    typeface_.Draw(x, baseline, text, style, &canvas_);
+  }
+
+  void Header(const std::string& name, const std::string& caption, Rgb color) {
+    Text(X(), PanelY() - 32, name, {.size_px = kNameSize, .color = color, .bold = true});
+    Text(X(), PanelY() - 11, caption, {.size_px = kCaptionSize, .color = kFaintTextColor});
+  }
+
+  void DrawShadows(const std::vector<Lighting>& shadows) {
+    const Canvas full = ShadeShadows(stage_.screen, light_.light, light_.truth, shadows);
+    const Canvas panel =
+        layout_.magnified > 1
+            ? Magnified(full, layout_.magnified)
+            : ReducedPanel(full, WrongMask(light_.truth, shadows), layout_.reduced);
+    canvas_.DrawImage(X(), PanelY(), panel);
+    const auto scaled = [this](int pixels) { return pixels * layout_.magnified / layout_.reduced; };
+    Frame(X() + scaled(layout_.crop.x) - kFrameWidth,
+          PanelY() + scaled(layout_.crop.y) - kFrameWidth,
+          scaled(layout_.crop.width) + 2 * kFrameWidth,
+          scaled(layout_.crop.height) + 2 * kFrameWidth);
+    const Canvas crop = EnlargedCrop(full, layout_.crop, layout_.crop_factor);
+    const int crop_y = PanelY() + layout_.panel_height + kCropGap;
+    canvas_.DrawImage(X(), crop_y, crop);
+    Frame(X(), crop_y, crop.width(), crop.height());
+  }
+
+  // A frame whose outer edge is this rectangle.
+  void Frame(int x, int y, int width, int height) {
+    canvas_.FillRectangle(x, y, width, kFrameWidth, kCropColor);
+    canvas_.FillRectangle(x, y + height - kFrameWidth, width, kFrameWidth, kCropColor);
+    canvas_.FillRectangle(x, y, kFrameWidth, height, kCropColor);
+    canvas_.FillRectangle(x + width - kFrameWidth, y, kFrameWidth, height, kCropColor);
+  }
+
+  const CompareStage& stage_;
+  const LightComparison& light_;
+  const ComparePictureOptions& options_;
+  const Layout& layout_;
+  const Typeface& typeface_;
+  Canvas canvas_;
+  int cell_ = 0;
+};
+
+}  // namespace
+
+Canvas DrawComparePicture(const CompareStage& stage,
+                          const LightComparison& light,
+                          const ComparePictureOptions& options,
+                          const Typeface& typeface) {
+  const Camera& camera = stage.screen.camera;
+  Layout layout = LayoutFor(camera.width, camera.height, static_cast<int>(light.maps.size()) + 1);
+  layout.crop = ChooseCrop(light, options.bias, camera.width, camera.height, layout.crop);
+  Page page(stage, light, options, layout, typeface);
+  page.DrawTitle();
+  page.DrawTruth();
+  const std::vector<const ComparedMap*> maps = InOrder(light, options.bias);
+  for (const ComparedMap* map : maps) page.DrawMap(*map);
+  page.DrawBars(maps);
+  page.DrawLegend();
+  return page.TakeCanvas();
+}
+
+}  // namespace lightfit

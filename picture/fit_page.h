@@ -1,0 +1,35 @@
+// picture/fit_page.h
+//
+// The picture of a fit: per light what the image and the map look like before and after.
+// In:   the read-back, and per light the focused matrix and the final one.
+// Out:  a Canvas, ready for WritePng().
+//
+// One row per light: the read-back coloured by the footprint of the focused map and of the fitted
+// one, on one scale, then both maps with what lands in them. A light without
+// a matrix has its message instead.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "jobs/fit_comparison.h"
+#include "optimizer/readback/readback.h"
+#include "picture/canvas.h"
+#include "picture/text.h"
+
+namespace lightfit {
+
+struct PictureOptions {
+  std::string title;        // usually the read-back's file name
+  SampleOptions samples;    // as used by the fit
+  std::string final_label;  // what "after" is, for the panel titles: "lightfit", "as published"
+};
+
+absl::StatusOr<Canvas> DrawPicture(const Readback& readback,
+                                   const std::vector<Comparison>& lights,
+                                   MapSize map,
+                                   const PictureOptions& options,
+                                   const Typeface& typeface);
+
+}  // namespace lightfit

@@ -1,0 +1,191 @@
+#include "base/stop.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "optimizer/figures/evaluate.h"
+#include "optimizer/figures/foretell.h"
+#include "optimizer/fit.h"
+#include "optimizer/light_view.h"
+#include "optimizer/search/global_search.h"
+#include "optimizer/search/polish.h"
+#include "optimizer/search/refine.h"
+#include "optimizer/sizing/allocation.h"
+#include "optimizer/sizing/map_shapes.h"
+#include "optimizer/sizing/tolerance.h"
+#include "optimizer/tracking/tracker.h"
+#include "tests/testing/fit_station.h"
+#include "tests/testing/matchers.h"
+#include "tests/testing/test_scene.h"
+
+namespace lightfit {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using testing::IsOk;
+using testing::StatusIs;
+using testing::TestScene;
+
+constexpr auto kCancelled = absl::StatusCode::kCancelled;
+constexpr MapSize kMap = {512, 256};
+
+std::stop_token Stopped() {
+  std::stop_source source;
+  source.request_stop();
+  return source.get_token();
+}
+
+FitOptions StoppedOptions(FitOptions options = {}) {
+  options.stop = Stopped();
+  return options;
+}
+
+TEST(Stop, AskedForBeforehandEndsEveryCallOnAReadback) {
+  const TestScene scene(/*seed=*/1, /*num_lights=*/2);
+  const Light& light = scene.lights[0];
+  const Readback readback = scene.View();
+  const FitOptions options = StoppedOptions();
+  const absl::StatusOr<LightMatrix> fit = FitLight(readback, light, kMap);
+  ASSERT_THAT(fit, IsOk());
+  const auto is_stopped = StatusIs(kCancelled, AllOf(HasSubstr("stop"), HasSubstr("options.stop")));
+
+  const LightMatrices fits = FitLights(readback, scene.lights, kMap, options);
+  ASSERT_EQ(fits.size(), 2u);
+  for (const auto& each : fits) EXPECT_THAT(each, is_stopped);
+  EXPECT_THAT(FitLight(readback, light, kMap, options), is_stopped);
+  EXPECT_THAT(Summarize(readback, light, options), is_stopped);
+  EXPECT_THAT(SummarizeInMap(readback, light, fit->map_from_world, options), is_stopped);
+  EXPECT_THAT(SummarizeForAnyAspect(readback, light, options), is_stopped);
+  EXPECT_THAT(EvaluateMatrix(readback, light, fit->map_from_world, kMap, options), is_stopped);
+  EXPECT_THAT(
+      ForetellWrongShare(readback, light, fit->map_from_world, kMap, options.samples, options.stop),
+      is_stopped);
+  for (const auto kind : {Tolerance::Kind::kRms, Tolerance::Kind::kP99, Tolerance::Kind::kWorst}) {
+    EXPECT_THAT(MeetTolerance(readback, light, {kind, 1.0, 1.0}, {}, options), is_stopped);
+  }
+
+  EXPECT_THAT(FindReceivers(readback, ~0u, options.samples, options.stop), is_stopped);
+  const absl::StatusOr<Receivers> receivers = FindReceivers(readback, ~0u, options.samples);
+  ASSERT_THAT(receivers, IsOk());
+  const auto names_light = StatusIs(kCancelled, HasSubstr("light \"" + light.name + "\""));
+  for (const Cover cover : {Cover::kReceivers, Cover::kShadowed}) {
+    EXPECT_THAT(CoverReceivers(*receivers, light, cover, options.stop), names_light);
+  }
+  EXPECT_THAT(PrepareLight(*receivers, light, options), names_light);
+  const absl::StatusOr<PreparedLight> prepared = PrepareLight(*receivers, light, {});
+  ASSERT_THAT(prepared, IsOk());
+  const SearchInputs inputs = {light, prepared->summary, &prepared->samples, &*receivers};
+  EXPECT_THAT(FitInputs(inputs, kMap, options), names_light);
+  EXPECT_THAT(MatrixOfMap(inputs, Eigen::Matrix3d::Identity(), kMap, options), names_light);
+  for (const Search search : {Search::kFocused,
+                              Search::kRotationLineSearch,
+                              Search::kRotationLineSearchRefined,
+                              Search::kGlobal}) {
+    FitOptions searching = options;
+    searching.search = search;
+    EXPECT_THAT(SearchAxis(inputs, kMap, searching), names_light);
+    EXPECT_THAT(FitLight(readback, light, kMap, searching), is_stopped);
+  }
+}
+
+TEST(Stop, AskedForBeforehandEndsEveryCallOnASummary) {
+  const TestScene scene(/*seed=*/1, /*num_lights=*/1);
+  const Light& light = scene.lights[0];
+  for (const Metric metric : {Metric::kL2, Metric::kL1AcrossEdge}) {
+    FitOptions options;
+    options.metric = metric;
+    const absl::StatusOr<Summary> summary = Summarize(scene.View(), light, options);
+    ASSERT_THAT(summary, IsOk());
+    const FitOptions stopped = StoppedOptions(options);
+    const auto names_light = StatusIs(kCancelled, HasSubstr("light \"" + light.name + "\""));
+    EXPECT_THAT(Fit(*summary, light, kMap, stopped), names_light);
+    EXPECT_THAT(FindMapShapes(*summary, light, stopped), names_light);
+    EXPECT_THAT(AllocateBudget({{light, *summary, 1.0}}, 1 << 20, {}, stopped),
+                StatusIs(kCancelled, HasSubstr("allocation")));
+    if (metric == Metric::kL2) {
+      EXPECT_THAT(MeetTolerance(*summary, light, {}, {}, stopped), names_light);
+    }
+  }
+}
+
+// What cannot be used is said whether or not there was time to use it.
+TEST(Stop, WrongInputsAreStillCalledWrong) {
+  const TestScene scene(/*seed=*/1, /*num_lights=*/1);
+  FitOptions options = StoppedOptions();
+  options.min_w = -1.0;
+  const auto is_wrong = StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("min_w"));
+  EXPECT_THAT(FitLight(scene.View(), scene.lights[0], kMap, options), is_wrong);
+  TrackerOptions tracker_options;
+  tracker_options.fit = options;
+  Tracker tracker(tracker_options);
+  EXPECT_THAT(tracker.Update(scene.View(), scene.lights, kMap).front(), is_wrong);
+  tracker_options.fit = StoppedOptions();
+  tracker.set_options(tracker_options);
+  EXPECT_THAT(tracker.Update(scene.View(), scene.lights, {0, 0}).front(),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("map = 0x0")));
+  EXPECT_THAT(tracker.Update(scene.View(), scene.lights, kMap).front(),
+              StatusIs(kCancelled, HasSubstr("options.stop")));
+  EXPECT_TRUE(tracker.state().empty());
+}
+
+TEST(Stop, NoAxisIsEvaluatedOnceItIsAskedFor) {
+  const auto stations = testing::FitStations(2, Affine::kMinEnergyParallelogram);
+  ASSERT_FALSE(stations.empty());
+  for (const testing::FitStation& station : stations) {
+    const AffineFit start = station.Start();
+    AffineProblem problem = station.problem;
+    problem.stop = Stopped();
+    SummaryEvaluator evaluator(station.summary, problem, testing::kMinW);
+    EXPECT_FALSE(evaluator.Evaluate(Eigen::Vector3d::UnitZ()).has_value());
+    RotationLineSearch(evaluator, start, /*rounds=*/3);
+    for (const Refiner refiner : {Refiner::kTinySolver, Refiner::kCeres}) {
+      std::string report;
+      const SearchResult result =
+          GlobalSearch(station.summary, evaluator, start, 1'000'000'000, refiner, &report);
+      EXPECT_EQ(result.fit.energy, start.energy);
+      const RefineResult refined =
+          RefineAxis(station.summary, problem, testing::kMinW, refiner, start);
+      EXPECT_EQ(refined.evaluations, 0);
+      EXPECT_EQ(refined.fit.energy, start.energy);
+    }
+    EXPECT_EQ(evaluator.num_evaluations(), 0);
+    for (const Polish polish : {Polish::kQuick, Polish::kThorough, Polish::kExact}) {
+      const RefineResult polished =
+          PolishAxis(station.summary, problem, testing::kMinW, polish, start);
+      EXPECT_EQ(polished.evaluations, 0);
+      EXPECT_EQ(polished.fit.energy, start.energy);
+    }
+  }
+}
+
+TEST(Stop, EndsAFitThatWouldTakeHours) {
+  const TestScene scene(/*seed=*/2, /*num_lights=*/1);
+  FitOptions options;
+  options.grid_directions = 1'000'000'000;
+  std::stop_source source;
+  options.stop = source.get_token();
+  std::thread stopper([&source] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    source.request_stop();
+  });
+  EXPECT_THAT(FitLight(scene.View(), scene.lights[0], kMap, options),
+              StatusIs(kCancelled, HasSubstr(scene.lights[0].name)));
+  stopper.join();
+}
+
+// The station that chooses sizes is valid, if not good, however early it is stopped.
+TEST(Stop, SizesChosenInHasteKeepTheBudget) {
+  const MapShapes shapes = {{{4.0, 1.0}}, 0.0, 0.0};
+  const std::vector<RatedSize> sizes = RateSizes(shapes, 1.0, {}, Stopped());
+  ASSERT_FALSE(sizes.empty());
+  EXPECT_EQ(ChooseSizes({sizes, sizes}, 1 << 20, Stopped()), std::vector<size_t>({0, 0}));
+}
+
+}  // namespace
+}  // namespace lightfit

@@ -1,0 +1,100 @@
+#include "wire/matrix_proto.h"
+
+#include "absl/strings/str_format.h"
+
+namespace lightfit {
+
+namespace {
+
+struct NamedClip {
+  const char* name;
+  ClipConvention clip;
+};
+
+const NamedClip kNamedClips[] = {{"vulkan", ClipConvention::Vulkan()},
+                                 {"direct3d", ClipConvention::Direct3D()},
+                                 {"opengl", ClipConvention::OpenGl()},
+                                 {"reversed_z", ClipConvention::ReversedZ()}};
+
+}  // namespace
+
+absl::StatusOr<Eigen::Matrix4d> MatrixFromProto(const v1::Matrix4x4& proto,
+                                                absl::string_view field) {
+  if (proto.m_size() != 16) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("%s: m has %d numbers, want 16, row-major", field, proto.m_size()));
+  }
+  const Eigen::Matrix4d matrix =
+      Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(proto.m().data());
+  if (!matrix.allFinite()) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("%s: m has values that are not finite, want 16 numbers", field));
+  }
+  return matrix;
+}
+
+v1::Matrix4x4 MatrixToProto(const Eigen::Matrix4d& matrix) {
+  v1::Matrix4x4 proto;
+  proto.mutable_m()->Reserve(16);
+  // + 0.0 turns -0 into 0, which JSON would otherwise write as "-0".
+  for (int i = 0; i < 16; ++i) proto.add_m(matrix(i / 4, i % 4) + 0.0);
+  return proto;
+}
+
+absl::StatusOr<ClipConvention> ClipConventionFromProto(const v1::ClipConvention& proto,
+                                                       absl::string_view field) {
+  ClipConvention clip;
+  clip.y_up = proto.y_up();
+  switch (proto.depth_range()) {
+    case v1::ClipConvention::DEPTH_RANGE_ZERO_TO_ONE:
+      clip.depth = ClipConvention::Depth::kZeroToOne;
+      return clip;
+    case v1::ClipConvention::DEPTH_RANGE_MINUS_ONE_TO_ONE:
+      clip.depth = ClipConvention::Depth::kMinusOneToOne;
+      return clip;
+    case v1::ClipConvention::DEPTH_RANGE_REVERSED_ZERO_TO_ONE:
+      clip.depth = ClipConvention::Depth::kReversedZeroToOne;
+      return clip;
+    default:
+      return absl::InvalidArgumentError(
+          absl::StrFormat("%s: depth_range = %d, want DEPTH_RANGE_ZERO_TO_ONE, "
+                          "DEPTH_RANGE_MINUS_ONE_TO_ONE or DEPTH_RANGE_REVERSED_ZERO_TO_ONE",
+                          field,
+                          proto.depth_range()));
+  }
+}
+
+v1::ClipConvention ClipConventionToProto(const ClipConvention& clip) {
+  v1::ClipConvention proto;
+  switch (clip.depth) {
+    case ClipConvention::Depth::kZeroToOne:
+      proto.set_depth_range(v1::ClipConvention::DEPTH_RANGE_ZERO_TO_ONE);
+      break;
+    case ClipConvention::Depth::kMinusOneToOne:
+      proto.set_depth_range(v1::ClipConvention::DEPTH_RANGE_MINUS_ONE_TO_ONE);
+      break;
+    case ClipConvention::Depth::kReversedZeroToOne:
+      proto.set_depth_range(v1::ClipConvention::DEPTH_RANGE_REVERSED_ZERO_TO_ONE);
+      break;
+  }
+  proto.set_y_up(clip.y_up);
+  proto.set_name(ClipConventionName(clip));
+  return proto;
+}
+
+const char* ClipConventionName(const ClipConvention& clip) {
+  for (const NamedClip& named : kNamedClips) {
+    if (named.clip.depth == clip.depth && named.clip.y_up == clip.y_up) return named.name;
+  }
+  return "";
+}
+
+absl::StatusOr<ClipConvention> ParseClipConvention(absl::string_view name) {
+  for (const NamedClip& named : kNamedClips) {
+    if (name == named.name) return named.clip;
+  }
+  return absl::InvalidArgumentError(absl::StrFormat(
+      "clip convention: \"%s\" is not known, want vulkan, direct3d, opengl or reversed_z", name));
+}
+
+}  // namespace lightfit

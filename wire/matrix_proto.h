@@ -1,0 +1,29 @@
+// wire/matrix_proto.h
+//
+// Matrices and clip conventions from and to lightfit.v1.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "geometry/clip.h"
+#include "lightfit/v1/matrix.pb.h"
+
+namespace lightfit {
+
+// 16 finite numbers, row-major; `field` names the matrix in the error.
+absl::StatusOr<Eigen::Matrix4d> MatrixFromProto(const v1::Matrix4x4& proto,
+                                                absl::string_view field);
+v1::Matrix4x4 MatrixToProto(const Eigen::Matrix4d& matrix);
+
+// The depth range must be one that this version knows.
+absl::StatusOr<ClipConvention> ClipConventionFromProto(const v1::ClipConvention& proto,
+                                                       absl::string_view field);
+v1::ClipConvention ClipConventionToProto(const ClipConvention& clip);
+
+// "vulkan", "direct3d", "opengl", "reversed_z", and back; "" for other combinations.
+const char* ClipConventionName(const ClipConvention& clip);
+absl::StatusOr<ClipConvention> ParseClipConvention(absl::string_view name);
+
+}  // namespace lightfit

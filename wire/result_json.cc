@@ -1,0 +1,151 @@
+#include "wire/result_json.h"
+
+#include <utility>
+
+#include "base/text_file.h"
+#include "base/utf8.h"
+#include "wire/camera_proto.h"
+#include "wire/light_proto.h"
+#include "wire/options_proto.h"
+#include "wire/proto_json.h"
+
+namespace lightfit {
+
+namespace {
+
+v1::StopReason StopReasonToProto(StopReason reason) {
+  switch (reason) {
+    case StopReason::kNoSearch:
+      return v1::STOP_REASON_NO_SEARCH;
+    case StopReason::kConverged:
+      return v1::STOP_REASON_CONVERGED;
+    case StopReason::kRoundLimit:
+      return v1::STOP_REASON_ROUND_LIMIT;
+    case StopReason::kAxisAtLimit:
+      return v1::STOP_REASON_AXIS_AT_LIMIT;
+  }
+  return v1::STOP_REASON_UNSPECIFIED;
+}
+
+v1::Energies EnergiesToProto(const LightMatrix& matrix, const LightFit& fit) {
+  v1::Energies proto;
+  proto.set_final(matrix.energy);
+  proto.set_start(matrix.energy_start);
+  if (matrix.energy_start > 0.0) proto.set_final_over_start(matrix.energy / matrix.energy_start);
+  if (fit.focused) {
+    proto.set_focused(fit.focused->energy);
+    if (fit.focused->energy > 0.0) {
+      proto.set_final_over_focused(matrix.energy / fit.focused->energy);
+    }
+  }
+  if (fit.as_published) {
+    proto.set_as_published(fit.as_published->energy);
+    if (fit.as_published->energy > 0.0) {
+      proto.set_final_over_as_published(matrix.energy / fit.as_published->energy);
+    }
+  }
+  return proto;
+}
+
+v1::ForetoldWrong ForetoldToProto(const LightFit& fit) {
+  v1::ForetoldWrong proto;
+  proto.set_final(*fit.wrong_share);
+  if (fit.focused) proto.set_focused(fit.focused->wrong_share);
+  if (fit.as_published) proto.set_as_published(fit.as_published->wrong_share);
+  return proto;
+}
+
+v1::LightResult LightResultToProto(const LightFit& fit, const FitReport& report) {
+  v1::LightResult proto;
+  proto.set_name(fit.light.name);
+  *proto.mutable_light() = LightToProto(fit.light);
+  const absl::Status& status = fit.matrix.status();
+  proto.mutable_status()->set_code(static_cast<int>(status.code()));
+  proto.mutable_status()->set_message(Utf8Text(status.message()));
+  if (fit.time_ms) proto.set_time_ms(*fit.time_ms);
+  const MapSize map = fit.matrix.ok() ? fit.matrix->map : report.map;
+  proto.mutable_map()->set_width(map.width);
+  proto.mutable_map()->set_height(map.height);
+  if (!fit.matrix.ok()) return proto;
+
+  const LightMatrix& matrix = *fit.matrix;
+  *proto.mutable_map_from_world() = MatrixToProto(matrix.map_from_world);
+  const Eigen::Matrix4d clip_from_world =
+      ClipFromMap(matrix.map, report.clip) * matrix.map_from_world;
+  *proto.mutable_clip_from_world() = MatrixToProto(clip_from_world);
+  *proto.mutable_clip() = ClipConventionToProto(report.clip);
+  *proto.mutable_energies() = EnergiesToProto(matrix, fit);
+  if (fit.wrong_share) *proto.mutable_foretold_wrong() = ForetoldToProto(fit);
+  proto.set_solver_report(matrix.solver_report);
+  *proto.mutable_footprint() =
+      FootprintToProto(matrix.footprint, report.options.compute_statistics);
+  *proto.mutable_samples() = SampleCountsToProto(matrix.samples);
+  proto.set_stop_reason(StopReasonToProto(matrix.stop_reason));
+  proto.set_evaluations(matrix.evaluations);
+  for (const TraceStep& step : matrix.trace) {
+    v1::TraceStep& step_proto = *proto.add_trace();
+    step_proto.set_station(std::string(step.station));
+    step_proto.set_evaluations(step.evaluations);
+    step_proto.set_energy(step.energy);
+  }
+  return proto;
+}
+
+}  // namespace
+
+v1::FootprintStatistics FootprintToProto(const FootprintStatistics& footprint,
+                                         bool with_quantiles) {
+  v1::FootprintStatistics proto;
+  proto.set_rms(footprint.rms);
+  if (with_quantiles) {
+    proto.set_median(footprint.median);
+    proto.set_p99(footprint.p99);
+    proto.set_worst(footprint.worst);
+  }
+  return proto;
+}
+
+v1::SampleCounts SampleCountsToProto(const SampleCounts& counts) {
+  v1::SampleCounts proto;
+  proto.set_receivers(counts.receivers);
+  proto.set_invalid_depth(counts.invalid_depth);
+  proto.set_candidates(counts.candidates);
+  proto.set_background(counts.background);
+  proto.set_discontinuity(counts.discontinuity);
+  proto.set_facing_away(counts.facing_away);
+  proto.set_edge_on(counts.edge_on);
+  proto.set_used(counts.used);
+  return proto;
+}
+
+v1::FitResult FitResultToProto(const FitReport& report) {
+  v1::FitResult proto;
+  for (const LightFit& fit : report.lights) {
+    *proto.add_lights() = LightResultToProto(fit, report);
+  }
+  proto.mutable_readback()->set_source(Utf8Text(report.source));
+  *proto.mutable_readback()->mutable_camera() = CameraToProto(report.camera, report.depth_kind);
+  *proto.mutable_options() = FitOptionsToProto(report.options);
+  return proto;
+}
+
+absl::StatusOr<std::string> FitResultToJson(const v1::FitResult& result) {
+  if (absl::Status status = CheckFinite(result, "result"); !status.ok()) return status;
+  return ProtoToJson(result);
+}
+
+absl::Status WriteFitResultJson(const std::string& path, const v1::FitResult& result) {
+  const absl::StatusOr<std::string> json = FitResultToJson(result);
+  if (!json.ok()) return InFile(path, json.status());
+  return WriteTextFileAtomically(path, *json);
+}
+
+absl::StatusOr<v1::FitResult> ReadFitResultJson(const std::string& path) {
+  const absl::StatusOr<std::string> json = ReadTextFile(path);
+  if (!json.ok()) return json.status();
+  v1::FitResult result;
+  if (absl::Status status = JsonToProto(*json, result); !status.ok()) return InFile(path, status);
+  return result;
+}
+
+}  // namespace lightfit
