@@ -1,8 +1,6 @@
 #include "geometry/convex_hull.h"
 
 #include <gtest/gtest.h>
-#include <rapidcheck.h>
-#include <rapidcheck/gtest.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -18,13 +16,15 @@ namespace {
 using testing::MatrixNear;
 using testing::Random;
 
+constexpr int kNumCases = 1000;  // of each property
+
 // Points on a small grid: repeats and collinear runs are common, and arithmetic is exact.
-std::vector<Eigen::Vector2d> GridPoints(int max_count, int extent) {
-  const auto coordinates = *rc::gen::container<std::vector<std::pair<int, int>>>(
-      *rc::gen::inRange(0, max_count),
-      rc::gen::pair(rc::gen::inRange(-extent, extent), rc::gen::inRange(-extent, extent)));
-  std::vector<Eigen::Vector2d> points;
-  for (const auto& [x, y] : coordinates) points.emplace_back(x, y);
+std::vector<Eigen::Vector2d> GridPoints(Random& random, int max_count, int extent) {
+  std::vector<Eigen::Vector2d> points(random.Int(0, max_count));
+  for (Eigen::Vector2d& point : points) {
+    point.x() = random.Int(-extent, extent);
+    point.y() = random.Int(-extent, extent);
+  }
   return points;
 }
 
@@ -49,32 +49,41 @@ bool Contains(absl::Span<const Eigen::Vector2d> polygon, const Eigen::Vector2d& 
   return std::find(polygon.begin(), polygon.end(), point) != polygon.end();
 }
 
-RC_GTEST_PROP(ConvexHull, KeepsExactlyTheExtremePoints, ()) {
-  const std::vector<Eigen::Vector2d> points = GridPoints(30, 6);
-  const Polygon hull = ConvexHull(points);
-  for (const Eigen::Vector2d& point : points) {
-    RC_ASSERT(Contains(hull, point) == IsExtreme(point, points));
-  }
-  for (const Eigen::Vector2d& vertex : hull) RC_ASSERT(Contains(points, vertex));
-}
-
-RC_GTEST_PROP(ConvexHull, IsStrictlyCounterClockwise, ()) {
-  const Polygon hull = ConvexHull(GridPoints(60, 20));
-  const size_t n = hull.size();
-  for (size_t i = 0; n >= 3 && i < n; ++i) {
-    const Eigen::Vector2d& a = hull[i];
-    const Eigen::Vector2d& b = hull[(i + 1) % n];
-    RC_ASSERT(Cross(b - a, hull[(i + 2) % n] - b) > 0.0);
-    for (const Eigen::Vector2d& vertex : hull) RC_ASSERT(Cross(b - a, vertex - a) >= 0.0);
+TEST(ConvexHull, KeepsExactlyTheExtremePoints) {
+  Random random(71);
+  for (int i = 0; i < kNumCases; ++i) {
+    const std::vector<Eigen::Vector2d> points = GridPoints(random, 30, 6);
+    const Polygon hull = ConvexHull(points);
+    for (const Eigen::Vector2d& point : points) {
+      ASSERT_TRUE(Contains(hull, point) == IsExtreme(point, points));
+    }
+    for (const Eigen::Vector2d& vertex : hull) ASSERT_TRUE(Contains(points, vertex));
   }
 }
 
-RC_GTEST_PROP(ConvexHull, DoesNotDependOnTheOrderOfPoints, ()) {
-  std::vector<Eigen::Vector2d> points = GridPoints(30, 10);
-  const Polygon hull = ConvexHull(points);
-  std::reverse(points.begin(), points.end());
-  RC_ASSERT(ConvexHull(points) == hull);
-  RC_ASSERT(ConvexHull(hull) == hull);
+TEST(ConvexHull, IsStrictlyCounterClockwise) {
+  Random random(72);
+  for (int i = 0; i < kNumCases; ++i) {
+    const Polygon hull = ConvexHull(GridPoints(random, 60, 20));
+    const size_t n = hull.size();
+    for (size_t k = 0; n >= 3 && k < n; ++k) {
+      const Eigen::Vector2d& a = hull[k];
+      const Eigen::Vector2d& b = hull[(k + 1) % n];
+      ASSERT_TRUE(Cross(b - a, hull[(k + 2) % n] - b) > 0.0);
+      for (const Eigen::Vector2d& vertex : hull) ASSERT_TRUE(Cross(b - a, vertex - a) >= 0.0);
+    }
+  }
+}
+
+TEST(ConvexHull, DoesNotDependOnTheOrderOfPoints) {
+  Random random(73);
+  for (int i = 0; i < kNumCases; ++i) {
+    std::vector<Eigen::Vector2d> points = GridPoints(random, 30, 10);
+    const Polygon hull = ConvexHull(points);
+    std::reverse(points.begin(), points.end());
+    ASSERT_TRUE(ConvexHull(points) == hull);
+    ASSERT_TRUE(ConvexHull(hull) == hull);
+  }
 }
 
 TEST(ConvexHull, EnclosesRandomPointsToRounding) {

@@ -1,8 +1,6 @@
 #include "geometry/enclosing_rectangle.h"
 
 #include <gtest/gtest.h>
-#include <rapidcheck.h>
-#include <rapidcheck/gtest.h>
 
 #include <Eigen/Dense>
 
@@ -25,43 +23,56 @@ bool HasCgal() {
          absl::StatusCode::kUnimplemented;
 }
 
+constexpr int kNumCases = 1000;  // of each property
+
 // Grid points make parallel edges and right angles, which random reals never do.
-Polygon GridPolygon() {
-  const auto coordinates = *rc::gen::container<std::vector<std::pair<int, int>>>(
-      *rc::gen::inRange(3, 25), rc::gen::pair(rc::gen::inRange(-9, 9), rc::gen::inRange(-9, 9)));
-  std::vector<Eigen::Vector2d> points;
-  for (const auto& [x, y] : coordinates) points.emplace_back(x, y);
-  const Polygon hull = ConvexHull(points);
-  RC_PRE(hull.size() >= 3u);
-  return hull;
+Polygon GridPolygon(Random& random) {
+  while (true) {
+    std::vector<Eigen::Vector2d> points(random.Int(3, 25));
+    for (Eigen::Vector2d& point : points) {
+      point.x() = random.Int(-9, 9);
+      point.y() = random.Int(-9, 9);
+    }
+    const Polygon hull = ConvexHull(points);
+    if (hull.size() >= 3) return hull;
+  }
 }
 
-RC_GTEST_PROP(MinAreaRectangle, EqualsBruteForceOverEdges, ()) {
-  const Polygon polygon = GridPolygon();
-  const Parallelogram rectangle = MinAreaRectangle(polygon);
-  const double expected = MinRectangleAreaOverEdges(polygon);
-  RC_ASSERT(std::abs(Area(rectangle) - expected) <= 1e-12 * expected);
-  RC_ASSERT(Overhang(rectangle, polygon) <= 1e-12);
-  RC_ASSERT(std::abs(rectangle.edge_u.dot(rectangle.edge_v)) <=
-            1e-12 * rectangle.edge_u.norm() * rectangle.edge_v.norm());
+TEST(MinAreaRectangle, EqualsBruteForceOverEdges) {
+  Random random(71);
+  for (int i = 0; i < kNumCases; ++i) {
+    const Polygon polygon = GridPolygon(random);
+    const Parallelogram rectangle = MinAreaRectangle(polygon);
+    const double expected = MinRectangleAreaOverEdges(polygon);
+    ASSERT_TRUE(std::abs(Area(rectangle) - expected) <= 1e-12 * expected);
+    ASSERT_LE(Overhang(rectangle, polygon), 1e-12);
+    ASSERT_TRUE(std::abs(rectangle.edge_u.dot(rectangle.edge_v)) <=
+                1e-12 * rectangle.edge_u.norm() * rectangle.edge_v.norm());
+  }
 }
 
-RC_GTEST_PROP(MinAreaRectangle, EqualsCgal, ()) {
-  if (!HasCgal()) RC_SUCCEED("this build has no CGAL");
-  const Polygon polygon = GridPolygon();
-  const absl::StatusOr<Parallelogram> from_cgal = MinAreaRectangleCgal(polygon);
-  RC_ASSERT(from_cgal.ok());
-  RC_ASSERT(std::abs(Area(MinAreaRectangle(polygon)) - Area(*from_cgal)) <=
-            1e-12 * Area(*from_cgal));
-  RC_ASSERT(Overhang(*from_cgal, polygon) <= 1e-12);
+TEST(MinAreaRectangle, EqualsCgal) {
+  if (!HasCgal()) GTEST_SKIP() << "this build has no CGAL";
+  Random random(72);
+  for (int i = 0; i < kNumCases; ++i) {
+    const Polygon polygon = GridPolygon(random);
+    const absl::StatusOr<Parallelogram> from_cgal = MinAreaRectangleCgal(polygon);
+    ASSERT_TRUE(from_cgal.ok());
+    ASSERT_TRUE(std::abs(Area(MinAreaRectangle(polygon)) - Area(*from_cgal)) <=
+                1e-12 * Area(*from_cgal));
+    ASSERT_LE(Overhang(*from_cgal, polygon), 1e-12);
+  }
 }
 
-RC_GTEST_PROP(MinAreaSkewedRectangle, EnclosesAndIsNeverLarger, ()) {
-  const Polygon polygon = GridPolygon();
-  const Parallelogram skewed = MinAreaSkewedRectangle(polygon);
-  RC_ASSERT(Overhang(skewed, polygon) <= 1e-12);
-  RC_ASSERT(Area(skewed) <= Area(MinAreaRectangle(polygon)) * (1.0 + 1e-12));
-  RC_ASSERT(Area(skewed) >= Area(polygon) * (1.0 - 1e-12));
+TEST(MinAreaSkewedRectangle, EnclosesAndIsNeverLarger) {
+  Random random(73);
+  for (int i = 0; i < kNumCases; ++i) {
+    const Polygon polygon = GridPolygon(random);
+    const Parallelogram skewed = MinAreaSkewedRectangle(polygon);
+    ASSERT_LE(Overhang(skewed, polygon), 1e-12);
+    ASSERT_TRUE(Area(skewed) <= Area(MinAreaRectangle(polygon)) * (1.0 + 1e-12));
+    ASSERT_TRUE(Area(skewed) >= Area(polygon) * (1.0 - 1e-12));
+  }
 }
 
 TEST(MinAreaRectangle, EqualsCgalAndBruteForceOnSlivers) {
