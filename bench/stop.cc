@@ -1,8 +1,7 @@
 // bench/stop.cc : how soon work ends that is asked to stop.
 //
-// In:   boxes on a floor at three sizes, --lights lights; from a second thread FitOptions::stop
-// says
-//       stop at a random moment of every call. Wants a processor for each of the two threads.
+// In:   boxes on a floor at three sizes, --lights lights; from a second thread a StopScope
+//       is asked to stop at a random moment of every call. Wants a processor for each of the two threads.
 // Out:  milliseconds from the request to the return of the call: median, 99 % and largest, and when
 //       in the call the largest was asked for; how much of it the thread was computing, as it would
 //       on an idle processor; beside the duration of the whole call. A call that answers with
@@ -26,6 +25,7 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "base/stop.h"
 #include "base/table.h"
 #include "bench/inputs.h"
 #include "optimizer/figures/evaluate.h"
@@ -53,7 +53,7 @@ struct Arguments {
 };
 
 // The call under test: returns the first status that is not OK.
-using Call = std::function<absl::Status(const std::stop_token&)>;
+using Call = std::function<absl::Status()>;
 
 struct Stop {
   double asked_ms = 0.0;   // after the call began
@@ -81,7 +81,8 @@ std::vector<Stop> StopOnce(const Call& call, Clock::duration delay) {
     asked = Clock::now();
     source.request_stop();
   });
-  const absl::Status status = call(source.get_token());
+  const StopScope stop_scope(source.get_token());
+  const absl::Status status = call();
   const Clock::time_point end = Clock::now();
   const double busy_ms = ThreadMilliseconds(caller);
   stopper.join();
@@ -112,7 +113,7 @@ class StopTable {
   void Measure(const std::string& name, const Call& call) {
     if (name.find(arguments_.only) == std::string::npos) return;
     const Clock::time_point first_begin = Clock::now();
-    const absl::Status status = call({});
+    const absl::Status status = call();
     if (!status.ok()) {
       absl::FPrintF(stderr, "%s: %s\n", name, status.ToString());
       std::exit(1);
@@ -178,10 +179,8 @@ void MeasureSize(const Arguments& arguments, MapSize size, StopTable* table) {
   const Eigen::Matrix4d map_from_world = FitLight(input.View(), light, kMap)->map_from_world;
   const std::string suffix = absl::StrCat(", ", size.width, "x", size.height);
   const auto measure = [&](const std::string& name, const FitOptions& options, const auto& call) {
-    table->Measure(name + suffix, [&](const std::stop_token& stop) {
-      FitOptions stoppable = options;
-      stoppable.stop = stop;
-      return call(stoppable);
+    table->Measure(name + suffix, [&]() {
+      return call(options);
     });
   };
   const auto fit_light = [&](const FitOptions& options) {
@@ -224,10 +223,9 @@ void MeasureSize(const Arguments& arguments, MapSize size, StopTable* table) {
 void MeasureHangingLamp(MapSize size, StopTable* table) {
   const testing::HangingLamp lamp(size.width, size.height);
   table->Measure(absl::StrCat("FitLight, focused, close lamp, ", size.width, "x", size.height),
-                 [&](const std::stop_token& stop) {
+                 [&]() {
                    FitOptions options;
                    options.search = Search::kFocused;
-                   options.stop = stop;
                    return FitLight(lamp.readback.View(), lamp.light, kMap, options).status();
                  });
 }
@@ -247,17 +245,15 @@ void MeasureSummaries(const Arguments& arguments, StopTable* table) {
       std::remove_if(lights.begin(), lights.end(), [&](const auto& l) { return !fits(l); }),
       lights.end());
   if (lights.empty()) return;
-  table->Measure("Fit, to the end", [&](const std::stop_token& stop) {
+  table->Measure("Fit, to the end", [&]() {
     FitOptions options;
-    options.stop = stop;
     return Fit(*lights.front().summary, lights.front().light, kMap, options).status();
   });
   for (const int multiple : {64, 1}) {
     table->Measure(
         absl::StrFormat("AllocateBudget, %d lights, multiples of %d", lights.size(), multiple),
-        [&](const std::stop_token& stop) {
+        [&]() {
           FitOptions options;
-          options.stop = stop;
           MapSizeRules rules;
           rules.multiple = multiple;
           return AllocateBudget(lights, int64_t{8192} * 8192, rules, options).status();

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/stop.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "calls/message_text.h"
@@ -161,7 +162,7 @@ absl::StatusOr<v1::Allocation> Answer(const v1::AllocateRequest& request,
   if (absl::Status status = ReadWeights(request, task); !status.ok()) return status;
 
   absl::StatusOr<AllocationReport> report = AllocateLights(*task, [](const std::string&) {});
-  if (context.stop.stop_requested()) return StoppedError();
+  if (StopRequested()) return StoppedError();
   if (!report.ok()) return report.status();
   report->fit.source = request.readback().source();
   report->fit.clip = *clip;
@@ -180,6 +181,7 @@ absl::StatusOr<v1::Allocation> Answer(const v1::AllocateRequest& request,
 
 absl::StatusOr<v1::Allocation> AnswerAllocate(const v1::AllocateRequest& request,
                                               const CallContext& context) {
+  const StopScope stop_scope(context.stop);
   AllocationTask task;
   absl::Status status = CheckSource(request);
   if (status.ok()) status = ReadGoal(request, &task);

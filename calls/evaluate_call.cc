@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/stop.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
@@ -89,6 +90,7 @@ absl::StatusOr<v1::Evaluation> Evaluate(const v1::CandidateMatrix& candidate,
 
 absl::StatusOr<v1::EvaluateResult> AnswerEvaluate(const v1::EvaluateRequest& request,
                                                   const CallContext& context) {
+  const StopScope stop_scope(context.stop);
   if (request.matrices().empty()) {
     return absl::InvalidArgumentError("matrices: none, want at least one");
   }
@@ -112,7 +114,7 @@ absl::StatusOr<v1::EvaluateResult> AnswerEvaluate(const v1::EvaluateRequest& req
     const v1::CandidateMatrix& candidate = request.matrices(i);
     absl::StatusOr<v1::Evaluation> evaluation =
         Evaluate(candidate, *lights, readback->view(), *options);
-    if (context.stop.stop_requested()) return StoppedError();
+    if (StopRequested()) return StoppedError();
     v1::Evaluation& entry = *result.add_evaluations();
     if (evaluation.ok()) entry = *evaluation;
     entry.set_light(candidate.light());

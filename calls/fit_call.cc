@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/stop.h"
 #include "calls/finished_result.h"
 #include "calls/pixel_buffer.h"
 #include "calls/request_fields.h"
@@ -54,6 +55,7 @@ absl::StatusOr<v1::FitResult> AnswerFit(const v1::FitRequest& request, const Cal
 absl::StatusOr<v1::FitResult> AnswerFit(const v1::FitRequest& request,
                                         const Readback& readback,
                                         const CallContext& context) {
+  const StopScope stop_scope(context.stop);
   const absl::StatusOr<std::vector<RequestLight>> lights = LightsOfRequest(request.lights());
   if (!lights.ok()) return lights.status();
   const absl::StatusOr<FitOptions> options = OptionsOfRequest(request.options(), context);
@@ -75,7 +77,7 @@ absl::StatusOr<v1::FitResult> AnswerFit(const v1::FitRequest& request,
   if (request.foretell_wrong()) {
     for (LightFit& fit : report.lights) Foretell(readback, *options, &fit);
   }
-  if (context.stop.stop_requested()) return StoppedError();
+  if (StopRequested()) return StoppedError();
   return FinishedResult(report, *lights);
 }
 

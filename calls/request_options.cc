@@ -19,7 +19,6 @@ absl::StatusOr<FitOptions> OptionsOfRequest(const v1::FitOptions& proto,
           absl::StrFormat("options.%s = %d, want at most %d", field, steps, kMaxSearchSteps));
     }
   }
-  options->stop = context.stop;
   return options;
 }
 

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "base/stop.h"
 #include "calls/request_fields.h"
 #include "calls/summary_request.h"
 #include "jobs/fit_summary.h"
@@ -12,6 +13,7 @@ namespace lightfit {
 
 absl::StatusOr<v1::FitResult> AnswerFitSummary(const v1::FitSummaryRequest& request,
                                                const CallContext& context) {
+  const StopScope stop_scope(context.stop);
   const absl::StatusOr<ClipConvention> clip = ClipOfRequest(request);
   if (!clip.ok()) return clip.status();
   const absl::StatusOr<SummarySet> sum =
@@ -31,7 +33,7 @@ absl::StatusOr<v1::FitResult> AnswerFitSummary(const v1::FitSummaryRequest& requ
     LightFit& fit = report.lights.emplace_back();
     fit.light = light.total.light;
     fit.matrix = FitSummary(light, *map, *options);
-    if (context.stop.stop_requested()) return StoppedError();
+    if (StopRequested()) return StoppedError();
   }
   v1::FitResult result = FitResultToProto(report);
   ClearReadbackFigures(result.mutable_readback(), result.mutable_lights());

@@ -3,6 +3,7 @@
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/text_format.h>
 
+#include "base/stop.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "base/text_file.h"
@@ -24,7 +25,7 @@ absl::Status AddTo(absl::optional<SummarySet>* sum,
                    const std::string& field,
                    absl::StatusOr<SummarySet> set,
                    const CallContext& context) {
-  if (context.stop.stop_requested()) return StoppedError();
+  if (StopRequested()) return StoppedError();
   if (!set.ok()) return InFile(field, set.status());
   if (!sum->has_value()) {
     *sum = *std::move(set);

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/stop.h"
 #include "absl/strings/str_format.h"
 #include "calls/finished_result.h"
 #include "calls/request_fields.h"
@@ -81,8 +82,7 @@ absl::StatusOr<TrackSession> TrackSession::Begin(const v1::TrackSetup& setup) {
 }
 
 absl::StatusOr<v1::FitResult> TrackSession::Track(const v1::TrackFrame& frame,
-                                                  const Readback& pixels,
-                                                  const std::stop_token& stop) {
+                                                  const Readback& pixels) {
   const absl::StatusOr<std::vector<RequestLight>> lights = LightsOfRequest(frame.lights());
   if (!lights.ok()) return lights.status();
   if (absl::Status status = ValidateReadback(pixels); !status.ok()) return status;
@@ -91,17 +91,14 @@ absl::StatusOr<v1::FitResult> TrackSession::Track(const v1::TrackFrame& frame,
     if (light.status.ok()) usable.push_back(light.light);
   }
   if (absl::Status status = TakeGivenState(usable); !status.ok()) return status;
-  TrackerOptions options = tracker_.options();
-  options.fit.stop = stop;
-  tracker_.set_options(options);
   const TrackedMatrices tracked = tracker_.Update(pixels, usable, map_);
-  if (stop.stop_requested()) return StoppedError();
+  if (StopRequested()) return StoppedError();
 
   FitReport report;
   report.source = frame.readback().source();
   report.camera = pixels.camera;
   report.depth_kind = pixels.depth_kind;
-  report.options = options.fit;
+  report.options = tracker_.options().fit;
   report.map = map_;
   report.clip = clip_;
   std::vector<v1::ShotLight> shots;
@@ -142,10 +139,11 @@ absl::Status TrackSession::TakeGivenState(const std::vector<Light>& lights) {
 v1::TrackResult TrackSession::Update(const v1::TrackFrame& frame,
                                      const absl::StatusOr<Readback>& pixels,
                                      const std::stop_token& stop) {
+  const StopScope stop_scope(stop);
   v1::TrackResult answer;
   answer.set_number(frame.number());
   absl::StatusOr<v1::FitResult> result =
-      pixels.ok() ? Track(frame, *pixels, stop) : pixels.status();
+      pixels.ok() ? Track(frame, *pixels) : pixels.status();
   SetStatus(result.status(), answer.mutable_status());
   if (result.ok()) *answer.mutable_result() = *std::move(result);
   return answer;

@@ -36,8 +36,7 @@ class TrackSession {
 
  private:
   absl::StatusOr<v1::FitResult> Track(const v1::TrackFrame& frame,
-                                      const Readback& pixels,
-                                      const std::stop_token& stop);
+                                      const Readback& pixels);
 
   // Once, when the first frame says what the lights are.
   absl::Status TakeGivenState(const std::vector<Light>& lights);

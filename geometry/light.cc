@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <utility>
 
+#include "base/stop.h"
 #include "absl/strings/str_format.h"
 
 namespace lightfit {
@@ -97,9 +98,9 @@ Eigen::Matrix<double, 3, 4> RayFromWorld(const Light& light, const Eigen::Vector
   return ray_from_world;
 }
 
-absl::Status CheckStop(const std::stop_token& stop, const Light& light) {
-  if (!stop.stop_requested()) return absl::OkStatus();
-  return CheckStop(stop, absl::StrFormat("light \"%s\"", light.name));
+absl::Status CheckStop(const Light& light) {
+  if (!StopRequested()) return absl::OkStatus();
+  return CheckStop(absl::StrFormat("light \"%s\"", light.name));
 }
 
 }  // namespace lightfit

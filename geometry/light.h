@@ -6,7 +6,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <stop_token>
 #include <string>
 
 #include "absl/status/status.h"
@@ -37,7 +36,7 @@ struct Light {
 absl::Status ValidateLight(const Light& light);
 
 // As CheckStop() of base/stop.h, in the name of the light.
-absl::Status CheckStop(const std::stop_token& stop, const Light& light);
+absl::Status CheckStop(const Light& light);
 
 // Light space: X = A (x - l) for a point light, (e1.x, e2.x, 1) for a directional one, with an
 // arbitrary but fixed right-handed orthonormal frame whose third axis is `forward` (a point light)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/stop.h"
 #include "base/scratch.h"
 #include "geometry/convex_hull.h"
 #include "geometry/enclosing_rectangle.h"
@@ -80,20 +81,19 @@ Eigen::Vector3d NearestPointOfHull(const Eigen::Vector3d& first, LowestUnitRay l
 
 }  // namespace
 
-std::optional<Eigen::Vector3d> FeasibleAxis(absl::Span<const Eigen::Vector3d> rays,
-                                            const std::stop_token& stop) {
+std::optional<Eigen::Vector3d> FeasibleAxis(absl::Span<const Eigen::Vector3d> rays) {
   constexpr size_t kBlock = 4096;  // between two looks at whether to stop
   ScratchVector<Eigen::Vector3d> unit_rays;
   unit_rays.reserve(rays.size());
   UnitRaySum sum;
   for (const Eigen::Vector3d& ray : rays) {
-    if (unit_rays.size() % kBlock == 0 && stop.stop_requested()) return std::nullopt;
+    if (unit_rays.size() % kBlock == 0 && StopRequested()) return std::nullopt;
     unit_rays.push_back(ray.normalized());
     sum.Add(unit_rays.back());
   }
-  return FeasibleAxis(sum, [&unit_rays, &stop](const Eigen::Vector3d& axis) {
+  return FeasibleAxis(sum, [&unit_rays](const Eigen::Vector3d& axis) {
     const Eigen::Vector3d* lowest = &unit_rays[0];
-    if (stop.stop_requested()) return *lowest;
+    if (StopRequested()) return *lowest;
     double lowest_height = std::numeric_limits<double>::infinity();
     for (const Eigen::Vector3d& ray : unit_rays) {
       const double height = axis.dot(ray);

@@ -8,7 +8,6 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <optional>
-#include <stop_token>
 
 #include "absl/functional/function_ref.h"
 #include "absl/types/span.h"
@@ -24,9 +23,8 @@ inline constexpr double kMinConeMargin = 0.02;
 // A unit vector p with p.X > 0 on every ray, or nothing when there is none by kMinConeMargin
 // (receivers all around a point light). The mean of the unit rays when that has room to spare, else
 // the axis of the smallest cone around them (the point of their hull nearest to the origin, by
-// Wolfe's algorithm). No rays give nothing. Of no use once `stop` says so.
-std::optional<Eigen::Vector3d> FeasibleAxis(absl::Span<const Eigen::Vector3d> rays,
-                                            const std::stop_token& stop = {});
+// Wolfe's algorithm). No rays give nothing. Of no use once a StopScope says so.
+std::optional<Eigen::Vector3d> FeasibleAxis(absl::Span<const Eigen::Vector3d> rays);
 
 // The same of rays that are too many to keep.
 struct UnitRaySum {

@@ -27,7 +27,7 @@ LightMatrices FitLights(const Readback& readback,
     if (light_status.back().ok()) light_mask |= uint32_t{1} << light.shadow_bit;
   }
   const absl::StatusOr<Receivers> receivers =
-      status.ok() ? FindReceivers(readback, light_mask, options.samples, options.stop) : status;
+      status.ok() ? FindReceivers(readback, light_mask, options.samples) : status;
 
   for (size_t i = 0; i < lights.size(); ++i) {
     if (!receivers.ok()) {
@@ -57,13 +57,12 @@ namespace {
 
 // For the L1 metrics gives the samples the weights they have in a map, and sums them up.
 void WeighIn(const Eigen::Matrix3d& map_from_normalized,
-             const std::stop_token& stop,
              PreparedLight* prepared) {
   L1Weights l1 =
-      WeightsForL1(prepared->samples, prepared->summary.metric, map_from_normalized, stop);
+      WeightsForL1(prepared->samples, prepared->summary.metric, map_from_normalized);
   prepared->samples.weight = std::move(l1.weights);
   prepared->summary = SummarizeSamples(
-      prepared->samples, RayCover(prepared->summary.cover), prepared->summary.metric, stop);
+      prepared->samples, RayCover(prepared->summary.cover), prepared->summary.metric);
   prepared->summary.footprint_sum = l1.floored_sum;
 }
 
@@ -75,7 +74,7 @@ absl::StatusOr<Summary> Summarize(const Readback& readback,
   if (absl::Status status = ValidateFitOptions(options); !status.ok()) return status;
   if (absl::Status status = ValidateLight(light); !status.ok()) return status;
   absl::StatusOr<Receivers> receivers =
-      FindReceivers(readback, uint32_t{1} << light.shadow_bit, options.samples, options.stop);
+      FindReceivers(readback, uint32_t{1} << light.shadow_bit, options.samples);
   if (!receivers.ok()) return receivers.status();
   absl::StatusOr<PreparedLight> prepared = PrepareLight(*receivers, light, options);
   if (!prepared.ok()) return prepared.status();
@@ -86,9 +85,9 @@ absl::StatusOr<Summary> Summarize(const Readback& readback,
     const absl::StatusOr<SearchOutcome> outcome = SearchAxis(
         {light, prepared->summary, &prepared->samples, &*receivers}, kAnySquare, options);
     if (!outcome.ok()) return outcome.status();
-    WeighIn(outcome->result.fit.map_from_ray, options.stop, &*prepared);
+    WeighIn(outcome->result.fit.map_from_ray, &*prepared);
   }
-  if (absl::Status status = CheckStop(options.stop, light); !status.ok()) return status;
+  if (absl::Status status = CheckStop(light); !status.ok()) return status;
   return std::move(prepared->summary);
 }
 
@@ -101,7 +100,7 @@ absl::StatusOr<Summary> SummarizeInMap(const Readback& readback,
   const absl::StatusOr<Eigen::Matrix3d> map_from_ray = MapFromRay(map_from_world, light);
   if (!map_from_ray.ok()) return map_from_ray.status();
   const absl::StatusOr<Receivers> receivers =
-      FindReceivers(readback, uint32_t{1} << light.shadow_bit, options.samples, options.stop);
+      FindReceivers(readback, uint32_t{1} << light.shadow_bit, options.samples);
   if (!receivers.ok()) return receivers.status();
   absl::StatusOr<PreparedLight> prepared = PrepareLight(*receivers, light, options);
   if (!prepared.ok()) return prepared.status();
@@ -111,14 +110,14 @@ absl::StatusOr<Summary> SummarizeInMap(const Readback& readback,
   const Eigen::Matrix3d map_from_normalized =
       *map_from_ray * prepared->summary.cover.normalized_from_ray.inverse();
   // Of those the map gives no footprint to, the cover is all that is left.
-  prepared->samples = SamplesInFront(prepared->samples, map_from_normalized.row(2), options.stop);
-  if (absl::Status status = CheckStop(options.stop, light); !status.ok()) return status;
+  prepared->samples = SamplesInFront(prepared->samples, map_from_normalized.row(2));
+  if (absl::Status status = CheckStop(light); !status.ok()) return status;
   prepared->samples.counts.used = static_cast<int64_t>(prepared->samples.size());
   if (prepared->samples.size() == 0) {
     return SummarizeSamples(prepared->samples, prepared->summary.cover, prepared->summary.metric);
   }
-  WeighIn(map_from_normalized, options.stop, &*prepared);
-  if (absl::Status status = CheckStop(options.stop, light); !status.ok()) return status;
+  WeighIn(map_from_normalized, &*prepared);
+  if (absl::Status status = CheckStop(light); !status.ok()) return status;
   return std::move(prepared->summary);
 }
 

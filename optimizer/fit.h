@@ -8,7 +8,7 @@
 // Errors:  InvalidArgument: an input is wrong; the message names field, value and remedy.
 //          FailedPrecondition: the input is fine but no single map exists, or there is nothing to
 //          fit; the message names the light and what to do.
-//          Cancelled: FitOptions::stop said so; of several lights those done before it are there.
+//          Cancelled: a StopScope said so; of several lights those done before it are there.
 // Threads: functions share nothing; call them from as many threads as you like.
 // Memory:  inside a ScratchScope all of it, results included, comes from there, and a pool that has
 //          seen the like before allocates nothing. base/scratch.h

@@ -116,7 +116,7 @@ absl::StatusOr<LightMatrix> LayMatrix(const SearchInputs& inputs,
   matrix.samples = summary.counts;
   if (inputs.samples != nullptr && options.compute_statistics) {
     matrix.footprint =
-        ComputeFootprintStatistics(map_from_normalized, *inputs.samples, options.stop);
+        ComputeFootprintStatistics(map_from_normalized, *inputs.samples);
   } else if (summary.counts.used > 0 && options.metric == Metric::kL2) {
     const double energy = summary.tensor.Energy(map_from_normalized);
     matrix.footprint.rms = std::sqrt(std::max(0.0, 0.5 * energy / summary.total_weight));
@@ -129,17 +129,16 @@ absl::StatusOr<LightMatrix> LayMatrix(const SearchInputs& inputs,
 absl::StatusOr<PreparedLight> PrepareLight(const Receivers& receivers,
                                            const Light& light,
                                            const FitOptions& options) {
-  absl::StatusOr<RayCover> cover = CoverReceivers(receivers, light, options.cover, options.stop);
+  absl::StatusOr<RayCover> cover = CoverReceivers(receivers, light, options.cover);
   if (!cover.ok()) return cover.status();
   const MetricWeights metric = WeightsOf(options.metric, options.along_edge_share);
   PreparedLight prepared;
   prepared.samples = SelectSamples(receivers,
                                    light,
                                    cover->normalized_from_ray,
-                                   /*with_edge_normals=*/metric.across_edge > 0.0,
-                                   options.stop);
-  prepared.summary = SummarizeSamples(prepared.samples, *cover, metric, options.stop);
-  if (absl::Status status = CheckStop(options.stop, light); !status.ok()) return status;
+                                   /*with_edge_normals=*/metric.across_edge > 0.0);
+  prepared.summary = SummarizeSamples(prepared.samples, *cover, metric);
+  if (absl::Status status = CheckStop(light); !status.ok()) return status;
   return prepared;
 }
 
@@ -148,7 +147,7 @@ absl::StatusOr<LightMatrix> FitInputs(const SearchInputs& inputs,
                                       const FitOptions& options) {
   const Summary& summary = inputs.summary;
   const Light& light = inputs.light;
-  if (absl::Status status = CheckStop(options.stop, light); !status.ok()) return status;
+  if (absl::Status status = CheckStop(light); !status.ok()) return status;
   if (options.search != Search::kFocused && summary.counts.used < options.samples.min_samples) {
     return TooFewSamplesError(light, summary.counts, options.samples.min_samples);
   }
@@ -156,7 +155,7 @@ absl::StatusOr<LightMatrix> FitInputs(const SearchInputs& inputs,
   if (!outcome.ok()) return outcome.status();
   const Eigen::Matrix3d map_from_normalized = Unmirrored(outcome->result.fit.map_from_ray, map);
   absl::StatusOr<LightMatrix> matrix = LayMatrix(inputs, map_from_normalized, map, options);
-  if (absl::Status status = CheckStop(options.stop, light); !status.ok()) return status;
+  if (absl::Status status = CheckStop(light); !status.ok()) return status;
   if (!matrix.ok()) return matrix.status();
   matrix->energy = outcome->result.fit.energy;
   matrix->energy_start = outcome->energy_start;
@@ -183,13 +182,13 @@ absl::StatusOr<LightMatrix> MatrixOfMap(const SearchInputs& inputs,
     matrix->energy =
         IsL1(options.metric) && inputs.samples != nullptr
             ? WeightsForL1(
-                  *inputs.samples, inputs.summary.metric, map_from_normalized, options.stop)
+                  *inputs.samples, inputs.summary.metric, map_from_normalized)
                   .footprint_sum
             : inputs.summary.tensor.Energy(map_from_normalized);
     matrix->energy_start = matrix->energy;
     matrix->stop_reason = StopReason::kNoSearch;
   }
-  if (absl::Status status = CheckStop(options.stop, inputs.light); !status.ok()) return status;
+  if (absl::Status status = CheckStop(inputs.light); !status.ok()) return status;
   return matrix;
 }
 

@@ -26,7 +26,7 @@ struct PreparedLight {
   Summary summary;
 };
 
-// Here and below: CancelledError once options.stop says so.
+// Here and below: CancelledError once a StopScope says so.
 
 // FailedPrecondition as CoverReceivers(). A light without any sample is a result.
 absl::StatusOr<PreparedLight> PrepareLight(const Receivers& receivers,

@@ -24,19 +24,17 @@ Eigen::Matrix3d MetricTensor(const Sample& sample, const MetricWeights& weights)
 
 double Energy(const Eigen::Matrix3d& map_from_ray,
               const Samples& samples,
-              const MetricWeights& weights,
-              const std::stop_token& stop) {
-  return EnergyAndGradient(map_from_ray, samples, weights, stop).energy;
+              const MetricWeights& weights) {
+  return EnergyAndGradient(map_from_ray, samples, weights).energy;
 }
 
 EnergyGradient EnergyAndGradient(const Eigen::Matrix3d& map_from_ray,
                                  const Samples& samples,
-                                 const MetricWeights& weights,
-                                 const std::stop_token& stop) {
+                                 const MetricWeights& weights) {
   const Eigen::Vector3d p = map_from_ray.row(2);
   const Eigen::Matrix3d R = map_from_ray.inverse();
   EnergyGradient sum;
-  for (size_t i = 0; i < samples.size() && !IsStopped(stop, i); ++i) {
+  for (size_t i = 0; i < samples.size() && !IsStopped(i); ++i) {
     const Sample sample = samples.At(i);
     const Eigen::Matrix3d G = MetricTensor(sample, weights);
     const double w = p.dot(sample.X);
@@ -53,8 +51,7 @@ EnergyGradient EnergyAndGradient(const Eigen::Matrix3d& map_from_ray,
 }
 
 FootprintStatistics ComputeFootprintStatistics(const Eigen::Matrix3d& map_from_ray,
-                                               const Samples& samples,
-                                               const std::stop_token& stop) {
+                                               const Samples& samples) {
   FootprintStatistics statistics;
   if (samples.size() == 0) return statistics;
   const Eigen::Vector3d p = map_from_ray.row(2);
@@ -62,7 +59,7 @@ FootprintStatistics ComputeFootprintStatistics(const Eigen::Matrix3d& map_from_r
   ScratchVector<double> footprints(samples.size());
   double sum_squared = 0.0, sum_weight = 0.0;
   for (size_t i = 0; i < samples.size(); ++i) {
-    if (IsStopped(stop, i)) return statistics;
+    if (IsStopped(i)) return statistics;
     const Sample sample = samples.At(i);
     const double squared = 0.5 * (p.dot(sample.X) * sample.D * R12).squaredNorm();
     footprints[i] = std::sqrt(squared);

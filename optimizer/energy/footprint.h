@@ -8,7 +8,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <stop_token>
 
 #include "optimizer/energy/metric.h"
 #include "optimizer/readback/samples.h"
@@ -30,11 +29,10 @@ Eigen::Matrix3d MetricTensor(const Sample& sample, const MetricWeights& weights)
 
 // Sum over samples of weight w^2 (r1'G r1 + r2'G r2).   math.md (3), Chong & Gortler (6)
 //
-// All sums over samples are of no use once `stop` says so (base/stop.h).
+// All sums over samples are of no use once a StopScope says so (base/stop.h).
 double Energy(const Eigen::Matrix3d& map_from_ray,
               const Samples& samples,
-              const MetricWeights& weights,
-              const std::stop_token& stop = {});
+              const MetricWeights& weights);
 
 // The same and its gradient over the axis p = h3 with h1, h2 held fixed.   math.md (4)
 struct EnergyGradient {
@@ -43,8 +41,7 @@ struct EnergyGradient {
 };
 EnergyGradient EnergyAndGradient(const Eigen::Matrix3d& map_from_ray,
                                  const Samples& samples,
-                                 const MetricWeights& weights,
-                                 const std::stop_token& stop = {});
+                                 const MetricWeights& weights);
 
 // How far one texel reaches on the screen: sqrt((|dS/du|^2 + |dS/dv|^2) / 2), so that a map that is
 // one-to-one with the read-back has footprint 1. Read-back pixels per texel.
@@ -57,7 +54,6 @@ struct FootprintStatistics {
 
 // sqrt((|dS/du|^2 + |dS/dv|^2) / 2) of every sample: root mean square, median, 99 % and largest.
 FootprintStatistics ComputeFootprintStatistics(const Eigen::Matrix3d& map_from_ray,
-                                               const Samples& samples,
-                                               const std::stop_token& stop = {});
+                                               const Samples& samples);
 
 }  // namespace lightfit

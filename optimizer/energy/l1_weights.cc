@@ -16,11 +16,10 @@ constexpr double kReweightingFloor = 0.02;
 // Footprints of all samples in the metric: the terms of the L1 energy.
 ScratchVector<double> MetricFootprints(const Samples& samples,
                                        const MetricWeights& metric,
-                                       const Eigen::Matrix3d& map_from_ray,
-                                       const std::stop_token& stop) {
+                                       const Eigen::Matrix3d& map_from_ray) {
   const Eigen::Matrix<double, 3, 2> r = map_from_ray.inverse().leftCols<2>();
   ScratchVector<double> footprints(samples.size());
-  for (size_t i = 0; i < samples.size() && !IsStopped(stop, i); ++i) {
+  for (size_t i = 0; i < samples.size() && !IsStopped(i); ++i) {
     const Sample sample = samples.At(i);
     const double w = map_from_ray.row(2).dot(sample.X);
     const Eigen::Matrix2d form = r.transpose() * MetricTensor(sample, metric) * r;
@@ -33,9 +32,8 @@ ScratchVector<double> MetricFootprints(const Samples& samples,
 
 L1Weights WeightsForL1(const Samples& samples,
                        const MetricWeights& metric,
-                       const Eigen::Matrix3d& map_from_ray,
-                       const std::stop_token& stop) {
-  const ScratchVector<double> footprints = MetricFootprints(samples, metric, map_from_ray, stop);
+                       const Eigen::Matrix3d& map_from_ray) {
+  const ScratchVector<double> footprints = MetricFootprints(samples, metric, map_from_ray);
   L1Weights result;
   result.weights.reserve(samples.size());
   double total_weight = 0.0;

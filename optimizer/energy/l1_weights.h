@@ -6,7 +6,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <stop_token>
 
 #include "base/scratch.h"
 #include "optimizer/energy/footprint.h"
@@ -17,7 +16,7 @@ namespace lightfit {
 // The weights under which squares stand for footprints: each sample's weight over its footprint in
 // `map_from_ray`, which is never taken to be less than a small share of their mean. The second is
 // the weighted sum of the footprints, the third that of what the weights take them to be.
-// math.md 4. Of no use once `stop` says so.
+// math.md 4. Of no use once a StopScope says so.
 struct L1Weights {
   ScratchVector<double> weights;
   double footprint_sum = 0.0;
@@ -25,7 +24,6 @@ struct L1Weights {
 };
 L1Weights WeightsForL1(const Samples& samples,
                        const MetricWeights& metric,
-                       const Eigen::Matrix3d& map_from_ray,
-                       const std::stop_token& stop = {});
+                       const Eigen::Matrix3d& map_from_ray);
 
 }  // namespace lightfit

@@ -83,14 +83,13 @@ Eigen::Matrix<double, 9, 9> EnergyTensor::AsQuadraticForm() const {
 
 Summary SummarizeSamples(const Samples& samples,
                          const RayCover& cover,
-                         const MetricWeights& metric,
-                         const std::stop_token& stop) {
+                         const MetricWeights& metric) {
   Summary summary;
   summary.metric = metric;
   summary.counts = samples.counts;
   summary.cover = cover;
   for (const double weight : samples.weight) summary.total_weight += weight;
-  summary.tensor = EnergyTensor(internal::AccumulateTensor(samples, metric, stop));
+  summary.tensor = EnergyTensor(internal::AccumulateTensor(samples, metric));
   return summary;
 }
 

@@ -10,7 +10,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <stop_token>
 
 #include "optimizer/energy/footprint.h"
 #include "optimizer/readback/cover.h"
@@ -66,11 +65,10 @@ struct Summary {
 };
 
 // One vectorised pass over the samples, whose rays must be in the cover's coordinates. The result
-// does not depend on the processor's vector width. Of no use once `stop` says so.
+// does not depend on the processor's vector width. Of no use once a StopScope says so.
 Summary SummarizeSamples(const Samples& samples,
                          const RayCover& cover,
-                         const MetricWeights& metric,
-                         const std::stop_token& stop = {});
+                         const MetricWeights& metric);
 
 template <typename Scalar>
 Eigen::Matrix<Scalar, 6, 6> SymmetricCongruence(const Eigen::Matrix<Scalar, 3, 3>& m) {

@@ -128,13 +128,14 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 #include <algorithm>
 
+#include "base/stop.h"
+
 namespace lightfit::internal {
 
 HWY_EXPORT(AccumulateSimd);
 
 Eigen::Matrix<double, 6, 6> AccumulateTensor(const Samples& samples,
-                                             const MetricWeights& metric,
-                                             const std::stop_token& stop) {
+                                             const MetricWeights& metric) {
   constexpr size_t kLanes = LIGHTFIT_SUMMARY_LANES;
   alignas(64) double sums[36 * kLanes] = {};
   const bool edges = metric.across_edge != 0.0 && samples.has_edge_normals();
@@ -148,7 +149,7 @@ Eigen::Matrix<double, 6, 6> AccumulateTensor(const Samples& samples,
   const double* normal_y = edges ? samples.edge_normal_y.data() : nullptr;
   const size_t whole = samples.size() / kLanes * kLanes;
   constexpr size_t kBlock = 1024 * kLanes;  // some ten microseconds
-  for (size_t begin = 0; begin < whole && !stop.stop_requested(); begin += kBlock) {
+  for (size_t begin = 0; begin < whole && !StopRequested(); begin += kBlock) {
     HWY_DYNAMIC_DISPATCH(AccumulateSimd)
     (arrays,
      samples.ray_from_screen.data(),

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <stop_token>
 
 #include "optimizer/energy/footprint.h"
 #include "optimizer/readback/samples.h"
@@ -14,9 +13,8 @@ namespace lightfit::internal {
 // math.md (6): entries over pairs (0,0), (0,1), (0,2), (1,1), (1,2), (2,2) of rays and of G.
 //
 // Sums run in four interleaved lanes on every processor, without fused multiply-add, so that the
-// same samples give the same bits everywhere. Of no use once `stop` says so.
+// same samples give the same bits everywhere. Of no use once a StopScope says so.
 Eigen::Matrix<double, 6, 6> AccumulateTensor(const Samples& samples,
-                                             const MetricWeights& metric,
-                                             const std::stop_token& stop = {});
+                                             const MetricWeights& metric);
 
 }  // namespace lightfit::internal

@@ -24,19 +24,19 @@ absl::StatusOr<MatrixFigures> EvaluateMatrix(const Readback& readback,
   const absl::StatusOr<Eigen::Matrix3d> map_from_ray = MapFromRay(map_from_world, light);
   if (!map_from_ray.ok()) return map_from_ray.status();
   const absl::StatusOr<Receivers> receivers =
-      FindReceivers(readback, uint32_t{1} << light.shadow_bit, options.samples, options.stop);
+      FindReceivers(readback, uint32_t{1} << light.shadow_bit, options.samples);
   if (!receivers.ok()) return receivers.status();
   // Normalised rays keep precision however far the light is; where receivers surround it, it is
   // near enough for light space to do.
   Eigen::Matrix3d normalized_from_ray = Eigen::Matrix3d::Identity();
   const absl::StatusOr<RayCover> cover =
-      CoverReceivers(*receivers, light, Cover::kShadowed, options.stop);
+      CoverReceivers(*receivers, light, Cover::kShadowed);
   if (cover.ok()) normalized_from_ray = cover->normalized_from_ray;
   const Samples all_samples = SelectSamples(
-      *receivers, light, normalized_from_ray, /*with_edge_normals=*/true, options.stop);
+      *receivers, light, normalized_from_ray, /*with_edge_normals=*/true);
   const Eigen::Matrix3d map_from_normalized = *map_from_ray * normalized_from_ray.inverse();
-  const Samples samples = SamplesInFront(all_samples, map_from_normalized.row(2), options.stop);
-  if (absl::Status status = CheckStop(options.stop, light); !status.ok()) return status;
+  const Samples samples = SamplesInFront(all_samples, map_from_normalized.row(2));
+  if (absl::Status status = CheckStop(light); !status.ok()) return status;
   if (samples.size() == 0 && all_samples.size() > 0) {
     return absl::FailedPreconditionError(
         absl::StrFormat("light \"%s\": w <= 0 at all %d samples: the map looks the other way",
@@ -47,17 +47,17 @@ absl::StatusOr<MatrixFigures> EvaluateMatrix(const Readback& readback,
   figures.samples = samples.counts;
   figures.num_behind = static_cast<int64_t>(all_samples.size() - samples.size());
   const absl::StatusOr<double> wrong_share =
-      ForetellWrongShare(readback, light, map_from_world, map, options.samples, options.stop);
+      ForetellWrongShare(readback, light, map_from_world, map, options.samples);
   if (!wrong_share.ok()) return wrong_share.status();
   figures.wrong_share = *wrong_share;
   if (samples.size() == 0) return figures;
-  figures.footprint = ComputeFootprintStatistics(map_from_normalized, samples, options.stop);
+  figures.footprint = ComputeFootprintStatistics(map_from_normalized, samples);
   const MetricWeights metric = WeightsOf(options.metric, options.along_edge_share);
   figures.energy =
       IsL1(options.metric)
-          ? WeightsForL1(samples, metric, map_from_normalized, options.stop).footprint_sum
-          : Energy(map_from_normalized, samples, metric, options.stop);
-  if (absl::Status status = CheckStop(options.stop, light); !status.ok()) return status;
+          ? WeightsForL1(samples, metric, map_from_normalized).footprint_sum
+          : Energy(map_from_normalized, samples, metric);
+  if (absl::Status status = CheckStop(light); !status.ok()) return status;
   if (!std::isfinite(figures.energy) || !std::isfinite(figures.footprint.worst)) {
     return absl::FailedPreconditionError(
         absl::StrFormat("light \"%s\": the matrix is singular at the samples", light.name));

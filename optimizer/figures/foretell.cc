@@ -102,8 +102,7 @@ absl::StatusOr<double> ForetellWrongShare(const Readback& readback,
                                           const Light& light,
                                           const Eigen::Matrix4d& map_from_world,
                                           MapSize map,
-                                          const SampleOptions& options,
-                                          const std::stop_token& stop) {
+                                          const SampleOptions& options) {
   const absl::StatusOr<PixelFootprints> footprints =
       PixelFootprints::Create(readback, light, map_from_world, options);
   if (!footprints.ok()) return footprints.status();
@@ -113,7 +112,7 @@ absl::StatusOr<double> ForetellWrongShare(const Readback& readback,
   double sum = 0.0;
   int64_t num_looked_at = 0;
   for (int y = stride / 2; y < readback.height(); y += stride) {
-    if (absl::Status status = CheckStop(stop, light); !status.ok()) return status;
+    if (absl::Status status = CheckStop(light); !status.ok()) return status;
     for (int x = stride / 2; x < readback.width(); x += stride) {
       ++num_looked_at;
       const std::optional<PixelFootprint> pixel = footprints->At(x, y);

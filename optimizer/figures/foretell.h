@@ -6,7 +6,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <stop_token>
 
 #include "absl/status/statusor.h"
 #include "geometry/light.h"
@@ -26,12 +25,11 @@ namespace lightfit {
 // In 0 ... 1. Compared with what exact ray casting measures the figure is right within a factor of
 // two or so from scene to scene, and ranks matrices on one image better than that
 // (docs/defaults.md). InvalidArgument for a read-back, light or matrix that cannot be used;
-// CancelledError once `stop` says so.
+// CancelledError once a StopScope says so.
 absl::StatusOr<double> ForetellWrongShare(const Readback& readback,
                                           const Light& light,
                                           const Eigen::Matrix4d& map_from_world,
                                           MapSize map,
-                                          const SampleOptions& options = {},
-                                          const std::stop_token& stop = {});
+                                          const SampleOptions& options = {});
 
 }  // namespace lightfit

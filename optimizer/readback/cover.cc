@@ -28,21 +28,19 @@ absl::Status FlatError(const Light& light) {
 
 // An axis that has all boxes of the grid in front of it.
 std::optional<Eigen::Vector3d> AxisOfBoxes(const TileGrid& grid,
-                                           const Matrix34d& ray_from_screen,
-                                           const std::stop_token& stop) {
+                                           const Matrix34d& ray_from_screen) {
   ScratchVector<Eigen::Vector3d> rays;
   rays.reserve(8 * grid.tiles.size());
-  ForEachTile(grid, stop, [&](const DepthTile& tile) {
+  ForEachTile(grid, [&](const DepthTile& tile) {
     for (const Eigen::Vector4d& corner : Corners(tile)) rays.push_back(ray_from_screen * corner);
   });
-  return FeasibleAxis(rays, stop);
+  return FeasibleAxis(rays);
 }
 
 Eigen::Vector3d MeanRay(const TileGrid& grid,
-                        const Matrix34d& ray_from_screen,
-                        const std::stop_token& stop) {
+                        const Matrix34d& ray_from_screen) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  ForEachTile(grid, stop, [&](const DepthTile& tile) {
+  ForEachTile(grid, [&](const DepthTile& tile) {
     const Eigen::Vector4d middle(0.5 * (tile.x_begin + tile.x_end),
                                  0.5 * (tile.y_begin + tile.y_end),
                                  0.5 * (tile.d_min + tile.d_max),
@@ -55,11 +53,10 @@ Eigen::Vector3d MeanRay(const TileGrid& grid,
 // The boxes that hold rays close to the covered ones, in four times their square, and perhaps some
 // more: all but those whose corners lie beyond one and the same side of it.
 TileGrid BoxesAlong(const TileGrid& grid,
-                    const Matrix34d& normalized_from_screen,
-                    const std::stop_token& stop) {
+                    const Matrix34d& normalized_from_screen) {
   constexpr double kCloseBy = 4.0;
   TileGrid close;
-  ForEachTile(grid, stop, [&](const DepthTile& tile) {
+  ForEachTile(grid, [&](const DepthTile& tile) {
     // Bits: which sides all corners seen so far are beyond.
     unsigned beyond = 0xf;
     for (const Eigen::Vector4d& corner : Corners(tile)) {
@@ -96,16 +93,15 @@ DepthRange RangeOverBox(const DepthTile& tile, const DepthOnScreen& depth, Depth
 }
 
 DepthRange RangeOverBoxes(const TileGrid& grid,
-                          const DepthOnScreen& depth,
-                          const std::stop_token& stop) {
+                          const DepthOnScreen& depth) {
   DepthRange range = kNoDepth;
-  ForEachTile(grid, stop, [&](const DepthTile& tile) { range = RangeOverBox(tile, depth, range); });
+  ForEachTile(grid, [&](const DepthTile& tile) { range = RangeOverBox(tile, depth, range); });
   return range;
 }
 
 DepthRange RangeOverReceivers(const CoveredSurfaces& covered, const DepthOnScreen& depth) {
   DepthRange range = kNoDepth;
-  ForEachTile(covered.tiles.grids[0], covered.stop, [&](const DepthTile& tile) {
+  ForEachTile(covered.tiles.grids[0], [&](const DepthTile& tile) {
     const DepthRange with_box = RangeOverBox(tile, depth, range);
     if (with_box.near == range.near && with_box.far == range.far) return;
     covered.ForEach(tile, [&](const Eigen::Vector4d& receiver) {
@@ -132,16 +128,15 @@ absl::Status SurroundedError(const Light& light) {
 
 absl::StatusOr<RayCover> CoverReceivers(const Receivers& receivers,
                                         const Light& light,
-                                        Cover which,
-                                        const std::stop_token& stop) {
+                                        Cover which) {
   DepthTiles shadowed;
   if (which == Cover::kShadowed) {
     shadowed = BuildDepthTiles(
-        receivers.readback, receivers.affine_depth, {uint32_t{1} << light.shadow_bit}, stop);
+        receivers.readback, receivers.affine_depth, {uint32_t{1} << light.shadow_bit});
   }
-  if (absl::Status status = CheckStop(stop, light); !status.ok()) return status;
+  if (absl::Status status = CheckStop(light); !status.ok()) return status;
   const bool covers_all = shadowed.num_surfaces == 0;
-  const CoveredSurfaces covered = {receivers, covers_all ? receivers.tiles : shadowed, stop};
+  const CoveredSurfaces covered = {receivers, covers_all ? receivers.tiles : shadowed};
   const DepthTiles& tiles = covered.tiles;
   const Matrix34d ray_from_screen = RayFromWorld(light) * receivers.world_from_screen;
   RayCover cover;
@@ -154,18 +149,18 @@ absl::StatusOr<RayCover> CoverReceivers(const Receivers& receivers,
     // Few, coarse boxes will do unless they reach around the light where finer ones do not.
     std::optional<Eigen::Vector3d> axis;
     for (size_t level = std::min<size_t>(1, tiles.grids.size() - 1) + 1; level-- > 0;) {
-      axis = AxisOfBoxes(tiles.grids[level], ray_from_screen, stop);
+      axis = AxisOfBoxes(tiles.grids[level], ray_from_screen);
       if (axis.has_value()) break;
     }
     if (axis.has_value()) {
-      cover.mean_ray = MeanRay(tiles.grids[0], ray_from_screen, stop);
+      cover.mean_ray = MeanRay(tiles.grids[0], ray_from_screen);
     } else {
       // Look at every receiver, unless a few of them surround the light already.
       ScratchVector<Eigen::Vector3d> some_rays;
       for (const Eigen::Vector4d& receiver : OneReceiverPerTile(covered, 0)) {
         some_rays.push_back(ray_from_screen * receiver);
       }
-      if (FeasibleAxis(some_rays, stop).has_value()) {
+      if (FeasibleAxis(some_rays).has_value()) {
         one_by_one = true;
         const UnitRaySum sum = SumOfUnitRays(covered, ray_from_screen);
         axis = FeasibleAxis(sum, [&](const Eigen::Vector3d& along) {
@@ -174,7 +169,7 @@ absl::StatusOr<RayCover> CoverReceivers(const Receivers& receivers,
         cover.mean_ray = sum.sum.normalized();
       }
     }
-    if (absl::Status status = CheckStop(stop, light); !status.ok()) return status;
+    if (absl::Status status = CheckStop(light); !status.ok()) return status;
     if (!axis.has_value()) return SurroundedError(light);
     frame_from_ray = FrameAlong(*axis);
     depth.depth_from_screen = frame_from_ray.row(2) * ray_from_screen;
@@ -183,23 +178,23 @@ absl::StatusOr<RayCover> CoverReceivers(const Receivers& receivers,
         light.direction.stableNormalized().transpose() * receivers.world_from_screen.topRows<3>();
   }
   cover.depth =
-      one_by_one ? RangeOverReceivers(covered, depth) : RangeOverBoxes(tiles.grids[0], depth, stop);
+      one_by_one ? RangeOverReceivers(covered, depth) : RangeOverBoxes(tiles.grids[0], depth);
 
   cover.hull = ExactHull(covered, frame_from_ray * ray_from_screen);
-  if (absl::Status status = CheckStop(stop, light); !status.ok()) return status;
+  if (absl::Status status = CheckStop(light); !status.ok()) return status;
   const std::optional<Eigen::Matrix3d> normalized = NormalizeRays(frame_from_ray, &cover.hull);
   if (!normalized.has_value()) {
     // A single shadowed pixel, or a row of them, has no area, which is as good as no shadow.
     return covers_all ? FlatError(light)
-                      : CoverReceivers(receivers, light, Cover::kReceivers, stop);
+                      : CoverReceivers(receivers, light, Cover::kReceivers);
   }
   cover.normalized_from_ray = *normalized;
   if (!covers_all) {
     // What is lit may land in the map too, behind all that is shadowed.
     const TileGrid close =
-        BoxesAlong(receivers.tiles.grids[0], *normalized * ray_from_screen, stop);
-    cover.depth.far = std::max(cover.depth.far, RangeOverBoxes(close, depth, stop).far);
-    if (absl::Status status = CheckStop(stop, light); !status.ok()) return status;
+        BoxesAlong(receivers.tiles.grids[0], *normalized * ray_from_screen);
+    cover.depth.far = std::max(cover.depth.far, RangeOverBoxes(close, depth).far);
+    if (absl::Status status = CheckStop(light); !status.ok()) return status;
   }
   return cover;
 }

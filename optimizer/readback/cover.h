@@ -6,7 +6,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <stop_token>
 
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
@@ -53,11 +52,10 @@ struct RayCover {
 // of them), kShadowed covers every receiver.
 //
 // FailedPrecondition when the receivers to cover surround a point light, or all lie in one plane
-// with the light; CancelledError once `stop` says so.
+// with the light; CancelledError once a StopScope says so.
 absl::StatusOr<RayCover> CoverReceivers(const Receivers& receivers,
                                         const Light& light,
-                                        Cover cover = Cover::kReceivers,
-                                        const std::stop_token& stop = {});
+                                        Cover cover = Cover::kReceivers);
 
 // The cover of rays that are known by their hull alone: `rays` in light space, `depth` as in
 // RayCover for a directional light, distances from a point light. `mean_ray` is not used where it

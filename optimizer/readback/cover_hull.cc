@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/stop.h"
 #include "base/scratch.h"
 #include "geometry/convex_hull.h"
 #include "geometry/hull_interior.h"
@@ -45,7 +46,7 @@ class HullBuilder {
   void Visit(size_t level, size_t index) {
     const TileGrid& grid = covered_.tiles.grids[level];
     const DepthTile& tile = grid.tiles[index];
-    if (tile.num_surfaces == 0 || covered_.stop.stop_requested()) return;
+    if (tile.num_surfaces == 0 || StopRequested()) return;
     const std::array<Eigen::Vector4d, 8> corners = Corners(tile);
     if (std::all_of(corners.begin(), corners.end(), [this](const Eigen::Vector4d& corner) {
           return (*inside_)(Project(corner));

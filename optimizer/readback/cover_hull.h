@@ -12,7 +12,7 @@ namespace lightfit {
 
 // That of the rays through the centres of all pixels to cover, exactly, as (x/z, y/z). All must
 // have z > 0. Looks only into tiles whose box reaches out of the hull found so far. Of no use once
-// `covered.stop` says so.
+// a StopScope says so.
 Polygon ExactHull(const CoveredSurfaces& covered, const Matrix34d& frame_from_screen);
 
 }  // namespace lightfit

@@ -50,7 +50,7 @@ ScratchVector<Eigen::Vector4d> OneReceiverPerTile(const CoveredSurfaces& covered
     return Eigen::Vector4d::Zero();  // not reached: the tile has a receiver
   };
   ScratchVector<Eigen::Vector4d> found;
-  ForEachTile(covered.tiles.grids[grid], covered.stop, [&](const DepthTile& tile) {
+  ForEachTile(covered.tiles.grids[grid], [&](const DepthTile& tile) {
     found.push_back(first_receiver(tile));
   });
   return found;
@@ -58,7 +58,7 @@ ScratchVector<Eigen::Vector4d> OneReceiverPerTile(const CoveredSurfaces& covered
 
 UnitRaySum SumOfUnitRays(const CoveredSurfaces& covered, const Matrix34d& ray_from_screen) {
   UnitRaySum sum;
-  ForEachTile(covered.tiles.grids[0], covered.stop, [&](const DepthTile& tile) {
+  ForEachTile(covered.tiles.grids[0], [&](const DepthTile& tile) {
     covered.ForEach(tile, [&](const Eigen::Vector4d& screen) {
       sum.Add((ray_from_screen * screen).normalized());
     });
@@ -71,7 +71,7 @@ Eigen::Vector3d LowestOfUnitRays(const CoveredSurfaces& covered,
                                  const Eigen::Vector3d& axis) {
   Eigen::Vector3d lowest = Eigen::Vector3d::Zero();
   double lowest_height = std::numeric_limits<double>::infinity();
-  ForEachTile(covered.tiles.grids[0], covered.stop, [&](const DepthTile& tile) {
+  ForEachTile(covered.tiles.grids[0], [&](const DepthTile& tile) {
     if (LowerBound(tile, ray_from_screen, axis) >= lowest_height) return;
     covered.ForEach(tile, [&](const Eigen::Vector4d& screen) {
       const Eigen::Vector3d ray = (ray_from_screen * screen).normalized();

@@ -8,9 +8,9 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <stop_token>
 
 #include "base/scratch.h"
+#include "base/stop.h"
 #include "geometry/ray_cone.h"
 #include "optimizer/readback/surfaces.h"
 
@@ -21,11 +21,11 @@ using Matrix34d = Eigen::Matrix<double, 3, 4>;
 // The corners of a tile's box of pixel centres and affine depths, as screen points (x, y, d, 1).
 std::array<Eigen::Vector4d, 8> Corners(const DepthTile& tile);
 
-// Calls visit(tile) for every tile of a grid that has a receiver, until `stop` says so.
+// Calls visit(tile) for every tile of a grid that has a receiver, until a StopScope says so.
 template <typename Visitor>
-void ForEachTile(const TileGrid& grid, const std::stop_token& stop, const Visitor& visit) {
+void ForEachTile(const TileGrid& grid, const Visitor& visit) {
   for (const DepthTile& tile : grid.tiles) {
-    if (stop.stop_requested()) return;
+    if (StopRequested()) return;
     if (tile.num_surfaces > 0) visit(tile);
   }
 }
@@ -33,7 +33,6 @@ void ForEachTile(const TileGrid& grid, const std::stop_token& stop, const Visito
 struct CoveredSurfaces {
   const Receivers& receivers;
   const DepthTiles& tiles;
-  const std::stop_token& stop;  // says when to stop looking at them (base/stop.h)
 
   // Calls visit(screen) for every one of the tile, as screen points (x, y, d, 1).
   template <typename Visitor>

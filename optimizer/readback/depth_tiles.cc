@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/stop.h"
 #include "geometry/affine_depth.h"
 #include "optimizer/readback/kernels.h"
 
@@ -82,8 +83,7 @@ void SetAffineRange(const Readback& readback,
 
 DepthTiles BuildDepthTiles(const Readback& readback,
                            const AffineDepth& affine_depth,
-                           SurfaceFilter filter,
-                           const std::stop_token& stop) {
+                           SurfaceFilter filter) {
   const int width = readback.width();
   const int height = readback.height();
   const internal::DepthIntervals intervals = Intervals(affine_depth);
@@ -95,7 +95,7 @@ DepthTiles BuildDepthTiles(const Readback& readback,
   finest.rows = (height + tile_size - 1) / tile_size;
   finest.tiles.reserve(static_cast<size_t>(finest.columns) * finest.rows);
   for (int y = 0; y < height; y += tile_size) {
-    if (stop.stop_requested()) return result;
+    if (StopRequested()) return result;
     for (int x = 0; x < width; x += tile_size) {
       DepthTile tile = {
           x, y, std::min(x + tile_size, width), std::min(y + tile_size, height), 0.0, 0.0, 0};

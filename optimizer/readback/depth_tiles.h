@@ -9,7 +9,6 @@
 #pragma once
 
 #include <cstdint>
-#include <stop_token>
 
 #include "base/scratch.h"
 #include "geometry/affine_depth.h"
@@ -47,11 +46,10 @@ struct DepthTiles {
   static constexpr int kTilesPerSide = 4;
 };
 
-// Not to be looked at once `stop` says so: the grids may be missing.
+// Not to be looked at once a StopScope says so: the grids may be missing.
 DepthTiles BuildDepthTiles(const Readback& readback,
                            const AffineDepth& affine_depth,
-                           SurfaceFilter filter,
-                           const std::stop_token& stop = {});
+                           SurfaceFilter filter);
 
 // Calls visit(x, y, d) at every surface of the tile that the filter lets through, in row order.
 template <typename Visitor>

@@ -93,8 +93,7 @@ class Terminators {
 Samples SelectSamples(const Receivers& receivers,
                       const Light& light,
                       const Eigen::Matrix3d& normalized_from_ray,
-                      bool with_edge_normals,
-                      const std::stop_token& stop) {
+                      bool with_edge_normals) {
   const uint32_t bit = uint32_t{1} << light.shadow_bit;
   Samples samples;
   samples.ray_from_screen = normalized_from_ray * RayFromWorld(light) * receivers.world_from_screen;
@@ -107,13 +106,13 @@ Samples SelectSamples(const Receivers& receivers,
   ScratchVector<Facing> facing;
   facing.reserve(receivers.boundary.size());
   for (const BoundaryPixel& pixel : receivers.boundary) {
-    if (IsStopped(stop, facing.size())) return samples;
+    if (IsStopped(facing.size())) return samples;
     const bool is_candidate = (pixel.lights & bit) != 0;
     facing.push_back(is_candidate ? FacingOf(pixel, light, receivers.options.min_cos_light)
                                   : Facing::kTowards);
   }
   const Terminators terminators(receivers, bit, facing);
-  for (size_t i = 0; i < receivers.boundary.size() && !IsStopped(stop, i); ++i) {
+  for (size_t i = 0; i < receivers.boundary.size() && !IsStopped(i); ++i) {
     const BoundaryPixel& pixel = receivers.boundary[i];
     if ((pixel.lights & bit) == 0) continue;
     if (facing[i] == Facing::kAway ||
@@ -142,12 +141,11 @@ Samples SelectSamples(const Receivers& receivers,
 }
 
 Samples SamplesInFront(const Samples& samples,
-                       const Eigen::RowVector3d& axis,
-                       const std::stop_token& stop) {
+                       const Eigen::RowVector3d& axis) {
   Samples front;
   front.ray_from_screen = samples.ray_from_screen;
   front.counts = samples.counts;
-  for (size_t i = 0; i < samples.size() && !IsStopped(stop, i); ++i) {
+  for (size_t i = 0; i < samples.size() && !IsStopped(i); ++i) {
     if (!(axis.dot(samples.At(i).X) > 0.0)) continue;
     front.x.push_back(samples.x[i]);
     front.y.push_back(samples.y[i]);

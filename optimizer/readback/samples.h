@@ -7,7 +7,6 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <stop_token>
 
 #include "base/scratch.h"
 #include "geometry/light.h"
@@ -41,16 +40,14 @@ struct Samples {
 
 // The light's share of the receivers' boundary: those that face the light, are not edge-on to it or
 // to the eye. `normalized_from_ray` acts on RayFromWorld(light); the identity keeps light space.
-// Here and below: of no use once `stop` says so.
+// Here and below: of no use once a StopScope says so.
 Samples SelectSamples(const Receivers& receivers,
                       const Light& light,
                       const Eigen::Matrix3d& normalized_from_ray,
-                      bool with_edge_normals,
-                      const std::stop_token& stop = {});
+                      bool with_edge_normals);
 
 // Those with w = p.X > 0, in the order they had. `counts` are as they were.
 Samples SamplesInFront(const Samples& samples,
-                       const Eigen::RowVector3d& axis,
-                       const std::stop_token& stop = {});
+                       const Eigen::RowVector3d& axis);
 
 }  // namespace lightfit

@@ -101,16 +101,15 @@ Eigen::Vector3d SurfaceNormal(const Eigen::Matrix4d& screen_from_world,
 
 absl::StatusOr<Receivers> FindReceivers(const Readback& readback,
                                         uint32_t light_mask,
-                                        const SampleOptions& options,
-                                        const std::stop_token& stop) {
+                                        const SampleOptions& options) {
   if (absl::Status status = ValidateReadback(readback); !status.ok()) return status;
   constexpr char kSubject[] = "readback";
   const int width = readback.width();
   const int height = readback.height();
   Receivers receivers(readback, options);
   const AffineDepth& affine_depth = receivers.affine_depth;
-  receivers.tiles = BuildDepthTiles(readback, affine_depth, SurfaceFilter(), stop);
-  if (absl::Status status = CheckStop(stop, kSubject); !status.ok()) return status;
+  receivers.tiles = BuildDepthTiles(readback, affine_depth, SurfaceFilter());
+  if (absl::Status status = CheckStop(kSubject); !status.ok()) return status;
   const int64_t num_receivers = receivers.tiles.num_surfaces;
   const int64_t num_pixels = static_cast<int64_t>(width) * height;
   const int64_t num_invalid = num_pixels - num_receivers - receivers.tiles.num_background;
@@ -126,7 +125,7 @@ absl::StatusOr<Receivers> FindReceivers(const Readback& readback,
       (readback.camera.orthographic ? 1.0 : receivers.world_from_screen(3, 2));
   ScratchVector<int32_t> columns(width);
   for (int y = 1; y + 1 < height; ++y) {
-    if (absl::Status status = CheckStop(stop, kSubject); !status.ok()) return status;
+    if (absl::Status status = CheckStop(kSubject); !status.ok()) return status;
     const uint32_t* row = readback.shadow_bits.data() + static_cast<size_t>(y) * width;
     const size_t num_columns =
         internal::ScanBoundary(row, width, width, light_mask, columns.data());

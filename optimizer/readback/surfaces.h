@@ -9,7 +9,6 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
-#include <stop_token>
 
 #include "absl/status/statusor.h"
 #include "base/scratch.h"
@@ -52,11 +51,10 @@ struct Receivers {
 
 // Looks at the shadow bits in `light_mask` only. Pixels in the outermost rows and columns have no
 // central differences and never count as boundary. InvalidArgument when the read-back is not valid
-// or has no receiver at all; CancelledError once `stop` says so.
+// or has no receiver at all; CancelledError once a StopScope says so.
 absl::StatusOr<Receivers> FindReceivers(const Readback& readback,
                                         uint32_t light_mask,
-                                        const SampleOptions& options,
-                                        const std::stop_token& stop = {});
+                                        const SampleOptions& options);
 
 // Affine depth and its derivatives at an inner pixel: central differences where the surface
 // continues to both sides (SampleOptions::max_depth_bend). At an outline or a crease, where it does

@@ -7,7 +7,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <stop_token>
 
 #include "absl/status/statusor.h"
 #include "geometry/enclosing_parallelogram.h"
@@ -25,7 +24,6 @@ struct AffineProblem {
   Eigen::Matrix3d normalized_from_ray;  // for shapes that are rectangles in light space
   double margin_percent = 0.0;
   double margin_texels = 0.0;
-  std::stop_token stop;  // SearchOptions::stop: from then on no axis can be used
 };
 
 struct AffineFit {

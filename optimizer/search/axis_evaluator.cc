@@ -10,7 +10,7 @@
 namespace lightfit {
 
 std::optional<AffineFit> AxisEvaluator::Evaluate(const Eigen::Vector3d& axis) {
-  if (problem_.stop.stop_requested()) return std::nullopt;
+  if (StopRequested()) return std::nullopt;
   if (!axis.allFinite() || !(axis.z() > 0.0)) return std::nullopt;
   std::optional<AffineFit> fit = EvaluateScaled(axis / axis.z());
   if (fit.has_value()) ++num_evaluations_;
@@ -62,13 +62,13 @@ template <typename Visitor>
 void SampleEvaluator::ForEachRay(const Visitor& visit) const {
   if (receivers_ == nullptr) {
     for (size_t i = 0; i < rays_.size(); ++i) {
-      if (IsStopped(problem().stop, i) || !visit(rays_[i])) return;
+      if (IsStopped(i) || !visit(rays_[i])) return;
     }
     return;
   }
   bool goes_on = true;
   for (const DepthTile& tile : receivers_->tiles.grids[0].tiles) {
-    if (!goes_on || problem().stop.stop_requested()) return;
+    if (!goes_on || StopRequested()) return;
     if (tile.num_surfaces == 0) continue;
     ForEachSurface(receivers_->readback,
                    receivers_->affine_depth,
@@ -93,7 +93,7 @@ std::optional<AffineFit> SampleEvaluator::EvaluateScaled(const Eigen::Vector3d& 
     if (is_usable) builder.Add({ray.x() / w, ray.y() / w});
     return is_usable;
   });
-  if (!is_usable || problem().stop.stop_requested()) return std::nullopt;
+  if (!is_usable || StopRequested()) return std::nullopt;
   // Back to normalised rays, which is where FitAffine takes its hull. Order and convexity hold.
   const Eigen::Matrix3d ray_from_plane = plane_from_ray.inverse();
   Polygon hull = builder.Hull();
@@ -102,12 +102,12 @@ std::optional<AffineFit> SampleEvaluator::EvaluateScaled(const Eigen::Vector3d& 
   }
   absl::StatusOr<AffineFit> fit = FitAffine(problem(), hull, Eigen::Matrix3d::Identity(), axis);
   if (!fit.ok()) return std::nullopt;
-  fit->energy = Energy(fit->map_from_ray, samples_, metric_, problem().stop);
+  fit->energy = Energy(fit->map_from_ray, samples_, metric_);
   return *std::move(fit);
 }
 
 Eigen::Vector3d SampleEvaluator::Gradient(const AffineFit& fit) {
-  return EnergyAndGradient(fit.map_from_ray, samples_, metric_, problem().stop).dE_dp;
+  return EnergyAndGradient(fit.map_from_ray, samples_, metric_).dE_dp;
 }
 
 }  // namespace lightfit

@@ -21,7 +21,7 @@ class AxisEvaluator {
   virtual ~AxisEvaluator() = default;
 
   // The fitted map at `axis`, or nothing where the axis cannot be used: w < min_w on some ray, and
-  // anywhere once problem().stop says so. The axis may have any positive length; that of the result
+  // anywhere once a StopScope says so. The axis may have any positive length; that of the result
   // has w = 1 at the origin of the rays.
   std::optional<AffineFit> Evaluate(const Eigen::Vector3d& axis);
 

@@ -121,7 +121,7 @@ absl::StatusOr<SearchOutcome> StartOfL1(const SearchInputs& inputs,
   absl::StatusOr<SearchOutcome> start = SearchSquares(inputs, inputs.summary, map, focused);
   if (!start.ok()) return start.status();
   AffineFit& fit = start->result.fit;
-  fit.energy = WeightsForL1(*inputs.samples, inputs.summary.metric, fit.map_from_ray, options.stop)
+  fit.energy = WeightsForL1(*inputs.samples, inputs.summary.metric, fit.map_from_ray)
                    .footprint_sum;
   start->energy_start = fit.energy;
   start->result.trace = {{"start", start->evaluations, fit.energy}};
@@ -143,9 +143,9 @@ absl::StatusOr<SearchOutcome> SearchL1(const SearchInputs& inputs,
   Samples reweighted = *inputs.samples;
   SearchOutcome current = *best;
   for (int round = 0; round < options.reweighting_rounds; ++round) {
-    if (options.stop.stop_requested()) break;
+    if (StopRequested()) break;
     const Summary summary =
-        SummarizeSamples(reweighted, inputs.summary.cover, inputs.summary.metric, options.stop);
+        SummarizeSamples(reweighted, inputs.summary.cover, inputs.summary.metric);
     if (round > 0 && Polishes(options)) {
       const AffineProblem problem = MakeAffineProblem(summary, map, options);
       SummaryEvaluator evaluator(summary, problem, options.min_w);
@@ -164,9 +164,9 @@ absl::StatusOr<SearchOutcome> SearchL1(const SearchInputs& inputs,
       current = *std::move(outcome);
       evaluations += current.evaluations;
     }
-    if (options.stop.stop_requested()) break;
+    if (StopRequested()) break;
     L1Weights l1 = WeightsForL1(
-        *inputs.samples, inputs.summary.metric, current.result.fit.map_from_ray, options.stop);
+        *inputs.samples, inputs.summary.metric, current.result.fit.map_from_ray);
     trace.push_back({round == 0 ? "search" : "reweight", evaluations, l1.footprint_sum});
     if (l1.footprint_sum < best->result.fit.energy) {
       best = current;
@@ -219,7 +219,6 @@ AffineProblem MakeAffineProblem(const Summary& summary, MapSize map, const Searc
   problem.normalized_from_ray = summary.cover.normalized_from_ray;
   problem.margin_percent = options.margin_percent;
   problem.margin_texels = options.margin_texels;
-  problem.stop = options.stop;
   return problem;
 }
 
@@ -228,7 +227,7 @@ absl::StatusOr<SearchOutcome> SearchAxis(const SearchInputs& inputs,
                                          const SearchOptions& options) {
   absl::StatusOr<SearchOutcome> outcome = SearchInMetric(inputs, map, options);
   // Whatever it is, it may be that because no more axes could be used.
-  if (absl::Status status = CheckStop(options.stop, inputs.light); !status.ok()) return status;
+  if (absl::Status status = CheckStop(inputs.light); !status.ok()) return status;
   return outcome;
 }
 

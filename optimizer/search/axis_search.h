@@ -43,7 +43,7 @@ AffineProblem MakeAffineProblem(const Summary& summary, MapSize map, const Searc
 
 // Runs SearchOptions::search in SearchOptions::metric. The L1 metrics follow it on reweighted
 // samples; from a summary alone they take the weights that are in it (Summary::footprint_sum).
-// FailedPrecondition when no axis can be used; CancelledError once SearchOptions::stop says so.
+// FailedPrecondition when no axis can be used; CancelledError once a StopScope says so.
 absl::StatusOr<SearchOutcome> SearchAxis(const SearchInputs& inputs,
                                          MapSize map,
                                          const SearchOptions& options);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/stop.h"
 #include "base/scratch.h"
 #include "optimizer/search/polish.h"
 #include "optimizer/search/refine.h"
@@ -74,8 +75,7 @@ SearchResult GlobalSearch(const Summary& summary,
     if (fit.has_value()) candidates.push_back(*fit);
   };
   consider(Eigen::Vector2d::Zero());
-  const std::stop_token& stop = evaluator.problem().stop;
-  for (int spoke = 0; spoke < grid_directions && !stop.stop_requested(); ++spoke) {
+  for (int spoke = 0; spoke < grid_directions && !StopRequested(); ++spoke) {
     const double angle = 2.0 * M_PI * spoke / grid_directions;
     const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
     const double edge = DistanceToEdge(summary.cover.hull, evaluator.min_w(), direction);

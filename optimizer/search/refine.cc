@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/stop.h"
+
 namespace lightfit {
 
 namespace {
@@ -67,14 +69,9 @@ class CeresCost final : public ceres::SizedCostFunction<18, 2> {
 // Ceres would log a cost that fails at a point it has accepted, so that it is stopped from here.
 class StopCallback final : public ceres::IterationCallback {
  public:
-  explicit StopCallback(const std::stop_token& stop) : stop_(stop) {}
-
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& /*summary*/) override {
-    return stop_.stop_requested() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+    return StopRequested() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
-
- private:
-  const std::stop_token& stop_;
 };
 
 }  // namespace
@@ -86,8 +83,9 @@ Eigen::Vector2d AxisParameters(const AffineFit& fit) {
 ReducedEnergyCost::ReducedEnergyCost(const Summary& summary,
                                      const AffineProblem& problem,
                                      double min_w,
-                                     double unit_energy)
-    : summary_(summary), problem_(problem), min_w_(min_w) {
+                                     double unit_energy,
+                                     bool heeds_stop)
+    : summary_(summary), problem_(problem), min_w_(min_w), heeds_stop_(heeds_stop) {
   // LDL' with pivoting copes with semidefinite forms (few samples).
   const Eigen::LDLT<Eigen::Matrix<double, 9, 9>> ldlt(summary.tensor.AsQuadraticForm());
   const Eigen::Matrix<double, 9, 1> diagonal =
@@ -99,7 +97,7 @@ ReducedEnergyCost::ReducedEnergyCost(const Summary& summary,
 }
 
 std::optional<AffineFit> ReducedEnergyCost::FitAt(const Eigen::Vector2d& ab) const {
-  if (problem_.stop.stop_requested() || !ab.allFinite()) return std::nullopt;
+  if ((heeds_stop_ && StopRequested()) || !ab.allFinite()) return std::nullopt;
   for (const Eigen::Vector2d& ray : summary_.cover.hull) {
     if (!(ab.dot(ray) + 1.0 >= min_w_)) return std::nullopt;
   }
@@ -226,10 +224,8 @@ RefineResult RefineAxis(const Summary& summary,
   if (!parameters.allFinite() || !(start.energy > 0.0) || !std::isfinite(start.energy)) {
     return result;
   }
-  if (problem.stop.stop_requested()) return result;
-  AffineProblem solver_problem = problem;
-  if (refiner == Refiner::kCeres) solver_problem.stop = {};  // see StopCallback
-  const ReducedEnergyCost cost(summary, solver_problem, min_w, start.energy);
+  if (StopRequested()) return result;
+  const ReducedEnergyCost cost(summary, problem, min_w, start.energy, refiner != Refiner::kCeres);
   if (!cost.FitAt(parameters).has_value()) return result;
 
   if (refiner == Refiner::kTinySolver) {
@@ -250,7 +246,7 @@ RefineResult RefineAxis(const Summary& summary,
     options.function_tolerance = kEnergyTolerance;
     options.parameter_tolerance = kStepTolerance;
     options.logging_type = ceres::SILENT;
-    StopCallback stop_callback(problem.stop);
+    StopCallback stop_callback;
     options.callbacks = {&stop_callback};
     ceres::Solver::Summary ceres_summary;
     ceres::Solve(options, &ceres_problem, &ceres_summary);

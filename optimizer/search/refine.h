@@ -32,14 +32,15 @@ class ReducedEnergyCost {
   ReducedEnergyCost(const Summary& summary,
                     const AffineProblem& problem,
                     double min_w,
-                    double unit_energy);
+                    double unit_energy,
+                    bool heeds_stop = true);
 
   // `jacobian` (column-major 18 x 2) may be null. Returns false where the axis cannot be used; the
   // residuals are then large and finite, so that a solver that does not look steps back.
   bool operator()(const double* ab, double* residuals, double* jacobian) const;
 
   // The fit at (a, b), or nothing where the axis cannot be used, which is everywhere once the
-  // problem's stop says so.
+  // StopScope says so, if it heeds that.
   std::optional<AffineFit> FitAt(const Eigen::Vector2d& ab) const;
 
   // Derivative of the fit's energy over (a, b), as the Jacobian has it: pixels^2 per texel^2.
@@ -59,6 +60,7 @@ class ReducedEnergyCost {
   const Summary& summary_;
   const AffineProblem& problem_;
   double min_w_;
+  bool heeds_stop_;
   Eigen::Matrix<double, 9, 9> factor_transposed_;  // L', scaled
   mutable int num_evaluations_ = 0;
 };

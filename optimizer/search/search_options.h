@@ -3,7 +3,6 @@
 // Every choice of the search for a map, in the words of docs/mathematics.md.
 #pragma once
 
-#include <stop_token>
 
 #include "absl/status/status.h"
 #include "optimizer/energy/metric.h"
@@ -70,11 +69,6 @@ struct SearchOptions {
   // Evaluate every candidate sample by sample, receiver by receiver, as the paper does, instead of
   // from the summary: the yardstick for speed. The result is the same to rounding.
   bool sample_by_sample = false;
-
-  // When it says stop, from whatever thread, what is under way with these options ends with
-  // CancelledError, within a fraction of a millisecond of search or a few rows of pixels. No choice
-  // of the fit: what comes to its end is the same with and without. The default never stops.
-  std::stop_token stop;
 };
 
 // InvalidArgument names the field as options.FIELD.

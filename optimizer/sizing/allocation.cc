@@ -77,8 +77,7 @@ std::vector<double> SplitTexels(absl::Span<const double> factors,
 }
 
 std::vector<size_t> ChooseSizes(absl::Span<const std::vector<RatedSize>> sizes,
-                                int64_t budget_texels,
-                                const std::stop_token& stop) {
+                                int64_t budget_texels) {
   constexpr int64_t kMaxCells = 8192;
   const int64_t cell_texels = (budget_texels + kMaxCells - 1) / kMaxCells;
   const auto num_cells = static_cast<size_t>(budget_texels / cell_texels + 1);
@@ -88,7 +87,7 @@ std::vector<size_t> ChooseSizes(absl::Span<const std::vector<RatedSize>> sizes,
   for (size_t light = 0; light < sizes.size(); ++light) {
     after.emplace_back(num_cells);
     for (size_t cell = 0; cell < num_cells; ++cell) {
-      if (stop.stop_requested()) return chosen;
+      if (StopRequested()) return chosen;
       const Spending& before = after[light][cell];
       if (std::isinf(before.cost)) continue;
       for (size_t choice = 0; choice < sizes[light].size(); ++choice) {
@@ -114,8 +113,7 @@ std::vector<size_t> ChooseSizes(absl::Span<const std::vector<RatedSize>> sizes,
 
 std::vector<RatedSize> RateSizes(const MapShapes& shapes,
                                  double weight,
-                                 const MapSizeRules& rules,
-                                 const std::stop_token& stop) {
+                                 const MapSizeRules& rules) {
   constexpr size_t kMaxUnsorted = 1 << 14;  // a millisecond or two
   const std::vector<int> sides = AllowedSides(rules);
   std::vector<RatedSize> sizes;
@@ -125,7 +123,7 @@ std::vector<RatedSize> RateSizes(const MapShapes& shapes,
       const MapSize map = {width, height};
       sizes.push_back({map, TexelsOf(map), weight * shapes.Energy(width, height)});
     }
-    if (stop.stop_requested()) break;
+    if (StopRequested()) break;
     if (sizes.size() > kMaxUnsorted) sizes = WorthwhileSizes(std::move(sizes));
   }
   return WorthwhileSizes(std::move(sizes));
@@ -158,10 +156,10 @@ absl::StatusOr<Allocation> AllocateBudget(absl::Span<const AllocationLight> ligh
     fitted.push_back(i);
     exponent = shapes->Exponent();
     factors.push_back(light.weight * shapes->UnitEnergy());
-    sizes.push_back(RateSizes(*shapes, light.weight, rules, options.stop));
+    sizes.push_back(RateSizes(*shapes, light.weight, rules));
     least_texels += sizes.back().front().texels;
   }
-  if (absl::Status status = CheckStop(options.stop, kSubject); !status.ok()) return status;
+  if (absl::Status status = CheckStop(kSubject); !status.ok()) return status;
   if (fitted.empty()) return allocation;
   if (budget_texels < least_texels) {
     const int side = AllowedSides(rules).front();
@@ -181,7 +179,7 @@ absl::StatusOr<Allocation> AllocateBudget(absl::Span<const AllocationLight> ligh
                                                 exponent,
                                                 static_cast<double>(budget_texels),
                                                 {least_side * least_side, most_side * most_side});
-  const std::vector<size_t> chosen = ChooseSizes(sizes, budget_texels, options.stop);
+  const std::vector<size_t> chosen = ChooseSizes(sizes, budget_texels);
   for (size_t n = 0; n < fitted.size(); ++n) {
     const AllocationLight& light = lights[fitted[n]];
     AllocatedMap& map = allocation.maps[fitted[n]];
@@ -194,7 +192,7 @@ absl::StatusOr<Allocation> AllocateBudget(absl::Span<const AllocationLight> ligh
     allocation.energy += light.weight * map.matrix->energy;
     allocation.ideal_energy += light.weight * map.ideal_energy;
   }
-  if (absl::Status status = CheckStop(options.stop, kSubject); !status.ok()) return status;
+  if (absl::Status status = CheckStop(kSubject); !status.ok()) return status;
   return allocation;
 }
 

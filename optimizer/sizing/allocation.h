@@ -18,7 +18,6 @@
 #pragma once
 
 #include <cstdint>
-#include <stop_token>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -60,13 +59,13 @@ struct Allocation {
 // a matrix has its own status and leaves its texels to the others.
 // InvalidArgument for weights, rules or options that cannot be used, for summaries of different
 // metrics, and for a budget below the smallest maps of all lights. CancelledError, for all of it,
-// once options.stop says so.
+// once a StopScope says so.
 absl::StatusOr<Allocation> AllocateBudget(absl::Span<const AllocationLight> lights,
                                           int64_t budget_texels,
                                           const MapSizeRules& rules,
                                           const FitOptions& options = {});
 
-// The stations of it. What they return once `stop` says so is valid, but nothing like the best.
+// The stations of it. What they return once a StopScope says so is valid, but nothing like the best.
 
 // S_l within [least, most] that sum to `budget`, or to less where all are at their most.
 // math.md (16). `factors` are c_l k_l.
@@ -82,15 +81,13 @@ std::vector<double> SplitTexels(absl::Span<const double> factors,
 // Which of each light's sizes to take: their texels sum to at most `budget_texels`, their costs to
 // as little as can be. `sizes` are as RateSizes() returns them. The smallest sizes must fit.
 std::vector<size_t> ChooseSizes(absl::Span<const std::vector<RatedSize>> sizes,
-                                int64_t budget_texels,
-                                const std::stop_token& stop = {});
+                                int64_t budget_texels);
 
 // The sizes that keep the rules and are worth their texels, each with MapShapes::Energy times
 // `weight` as its cost.
 struct MapShapes;
 std::vector<RatedSize> RateSizes(const MapShapes& shapes,
                                  double weight,
-                                 const MapSizeRules& rules,
-                                 const std::stop_token& stop = {});
+                                 const MapSizeRules& rules);
 
 }  // namespace lightfit

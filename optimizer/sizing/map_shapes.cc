@@ -134,7 +134,7 @@ absl::StatusOr<Summary> SummarizeForAnyAspect(const Readback& readback,
     shapes = std::move(next_shapes);
     if (!gained) break;
   }
-  if (absl::Status status = CheckStop(options.stop, light); !status.ok()) return status;
+  if (absl::Status status = CheckStop(light); !status.ok()) return status;
   return summary;
 }
 

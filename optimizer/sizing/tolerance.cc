@@ -30,10 +30,9 @@ using TryFunction = std::function<absl::StatusOr<ToleranceMap>(MapSize)>;
 // lit neighbour of what is covered may lie: look-ups there find light. Of no use once `stop` says
 // so.
 ScratchVector<double> FootprintsOf(const Eigen::Matrix3d& map_from_ray,
-                                   const Samples& samples,
-                                   const std::stop_token& stop) {
+                                   const Samples& samples) {
   ScratchVector<double> footprints(samples.size(), 0.0);
-  for (size_t i = 0; i < samples.size() && !IsStopped(stop, i); ++i) {
+  for (size_t i = 0; i < samples.size() && !IsStopped(i); ++i) {
     if (!(map_from_ray.row(2).dot(samples.At(i).X) > 0.0)) continue;
     footprints[i] = std::sqrt(0.5) * Footprint(map_from_ray, samples.At(i)).norm();
   }
@@ -112,7 +111,7 @@ absl::StatusOr<Summary> SummaryFor(Tolerance::Kind kind,
       const absl::StatusOr<Eigen::Matrix3d> map_from_ray =
           MapFromNormalized(*fit, light, summary.cover);
       if (!map_from_ray.ok()) return map_from_ray.status();
-      const ScratchVector<double> footprints = FootprintsOf(*map_from_ray, samples, options.stop);
+      const ScratchVector<double> footprints = FootprintsOf(*map_from_ray, samples);
       const double figure = FigureOf(kind, footprints);
       if (figure < least) {
         least = figure;
@@ -122,7 +121,7 @@ absl::StatusOr<Summary> SummaryFor(Tolerance::Kind kind,
           round < rounds_towards_many ? Reweighting::kTowardsMany : Reweighting::kTowardsFew;
       samples.weight = Reweighted(reweighting, samples.weight, footprints, figure);
       summary =
-          SummarizeSamples(samples, prepared.summary.cover, prepared.summary.metric, options.stop);
+          SummarizeSamples(samples, prepared.summary.cover, prepared.summary.metric);
     }
   }
   return best;
@@ -155,7 +154,7 @@ absl::StatusOr<ToleranceMap> SmallestWithin(const Summary& summary,
                                             const TryFunction& try_size) {
   const absl::StatusOr<MapShapes> shapes = FindMapShapes(summary, light, options);
   if (!shapes.ok()) return shapes.status();
-  const std::vector<RatedSize> sizes = RateSizes(*shapes, /*weight=*/1.0, rules, options.stop);
+  const std::vector<RatedSize> sizes = RateSizes(*shapes, /*weight=*/1.0, rules);
   absl::StatusOr<ToleranceMap> best = try_size(sizes.back().map);
   if (!best.ok()) return best;
   best->is_met = best->reached_px <= tolerance.limit_px;
@@ -214,7 +213,7 @@ absl::StatusOr<ToleranceMap> MeetTolerance(const Readback& readback,
   if (absl::Status status = Validate(tolerance, rules, squares); !status.ok()) return status;
   if (absl::Status status = ValidateLight(light); !status.ok()) return status;
   const absl::StatusOr<Receivers> receivers =
-      FindReceivers(readback, uint32_t{1} << light.shadow_bit, options.samples, options.stop);
+      FindReceivers(readback, uint32_t{1} << light.shadow_bit, options.samples);
   if (!receivers.ok()) return receivers.status();
   const absl::StatusOr<PreparedLight> prepared = PrepareLight(*receivers, light, squares);
   if (!prepared.ok()) return prepared.status();
@@ -231,17 +230,17 @@ absl::StatusOr<ToleranceMap> MeetTolerance(const Readback& readback,
           MapFromNormalized(*matrix, light, summary.cover);
       if (!map_from_ray.ok()) return map_from_ray.status();
       const ScratchVector<double> footprints =
-          FootprintsOf(*map_from_ray, prepared->samples, options.stop);
+          FootprintsOf(*map_from_ray, prepared->samples);
       const double figure = tolerance.kind == Tolerance::Kind::kRms
                                 ? RmsOf(footprints, prepared->samples.weight)
                                 : FigureOf(tolerance.kind, footprints);
       if (options.compute_statistics) {
         matrix->footprint =
-            ComputeFootprintStatistics(*map_from_ray, prepared->samples, options.stop);
+            ComputeFootprintStatistics(*map_from_ray, prepared->samples);
         // Its rank is rounded there, where a promise counts up.
         if (tolerance.kind == Tolerance::Kind::kP99) matrix->footprint.p99 = figure;
       }
-      if (absl::Status status = CheckStop(options.stop, light); !status.ok()) return status;
+      if (absl::Status status = CheckStop(light); !status.ok()) return status;
       ToleranceMap trial;
       trial.reached_px = figure * tolerance.image_scale;
       trial.num_samples = static_cast<int64_t>(

@@ -10,6 +10,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/types/span.h"
 #include "base/scratch.h"
+#include "base/stop.h"
 #include "base/triple_buffer.h"
 
 namespace lightfit {
@@ -39,7 +40,6 @@ void Publish(const absl::StatusOr<TrackedMatrix>& result, FrameLight* light) {
 }
 
 void Update(const Submission& submission,
-            const std::stop_token& stop,
             Tracker* tracker,
             FrameMatrices* matrices) {
   const FrameReadback& readback = submission.readback;
@@ -56,9 +56,7 @@ void Update(const Submission& submission,
     for (FrameLight& light : matrices->lights) Publish(too_many, &light);
     return;
   }
-  TrackerOptions options = submission.options;
-  options.fit.stop = stop;
-  tracker->set_options(options);
+  tracker->set_options(submission.options);
   const auto results = tracker->Update(readback.View(), readback.lights, readback.map);
   for (size_t i = 0; i < num_lights; ++i) Publish(results[i], &matrices->lights[i]);
 }
@@ -94,6 +92,7 @@ struct AsyncOptimizer::Shared {
 
   // The optimizer's thread.
   void Run(const std::stop_token& stop) {
+    const StopScope stop_scope(stop);
     ScratchPool pool;  // no frame but the first few takes anything from the heap
     Tracker tracker{TrackerOptions()};
     int num_naps = 0;
@@ -112,7 +111,7 @@ struct AsyncOptimizer::Shared {
       num_naps = 0;
       {
         const ScratchScope scope(&pool);
-        Update(submissions.front(), stop, &tracker, &matrices.back());
+        Update(submissions.front(), &tracker, &matrices.back());
       }
       if (stop.stop_requested()) return;
       num_done.fetch_add(1);  // first, so that nobody polls a frame that is not counted

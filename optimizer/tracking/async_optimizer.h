@@ -74,7 +74,7 @@ class AsyncOptimizer {
  public:
   // Starts the thread, which sleeps until the first frame. InvalidArgument as
   // ValidateTrackerOptions(); ResourceExhausted when no thread is to be had. Here and in
-  // SetOptions() `fit.stop` does not count: the destructor is what stops the work.
+  // The destructor is what stops the work: StopScopes of the callers' threads do not reach it.
   static absl::StatusOr<AsyncOptimizer> Start(const TrackerOptions& options = {});
 
   AsyncOptimizer(AsyncOptimizer&&) noexcept;

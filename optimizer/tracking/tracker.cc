@@ -296,10 +296,9 @@ TrackedMatrices Tracker::Update(const Readback& readback,
   for (const Light& light : lights) {
     if (ValidateLight(light).ok()) light_mask |= uint32_t{1} << light.shadow_bit;
   }
-  const std::stop_token& stop = options_.fit.stop;
-  if (stop.stop_possible()) states_before_ = states_;
+  if (StopPossible()) states_before_ = states_;
   const absl::StatusOr<Receivers> receivers =
-      status.ok() ? FindReceivers(readback, light_mask, options_.fit.samples, stop) : status;
+      status.ok() ? FindReceivers(readback, light_mask, options_.fit.samples) : status;
   for (size_t i = 0; i < lights.size(); ++i) {
     const Light& light = lights[i];
     // States stand in the order of the lights, so that those of one frame are mostly in place.
@@ -322,11 +321,11 @@ TrackedMatrices Tracker::Update(const Readback& readback,
     }
   }
   states_.resize(lights.size());
-  if (stop.stop_requested()) {
+  if (StopRequested()) {
     states_.swap(states_before_);
     for (size_t i = 0; i < lights.size(); ++i) {
       // What cannot be used is said whether or not there was time to use it.
-      if (!absl::IsInvalidArgument(results[i].status())) results[i] = CheckStop(stop, lights[i]);
+      if (!absl::IsInvalidArgument(results[i].status())) results[i] = CheckStop(lights[i]);
     }
   }
   return results;

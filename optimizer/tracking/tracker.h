@@ -106,7 +106,7 @@ class Tracker {
   // fitted (no shadow edge in view, say) but the matrix of the frame before is valid still, that is
   // the result.
   // CancelledError for every light whose inputs are right, and the tracker as it was before the
-  // frame, once options().fit.stop says so.
+  // frame, once a StopScope says so.
   TrackedMatrices Update(const Readback& readback, absl::Span<const Light> lights, MapSize map);
 
   // To stop and go on in another process.

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "absl/strings/str_format.h"
+#include "base/stop.h"
 #include "optimizer/figures/evaluate.h"
 #include "optimizer/fit.h"
 #include "optimizer/sizing/allocation.h"
@@ -89,7 +90,7 @@ absl::StatusOr<std::string> TextOfResult(const absl::StatusOr<T>& result) {
   return TextOf(*result);
 }
 
-using Call = std::function<absl::StatusOr<std::string>(const std::stop_token&)>;
+using Call = std::function<absl::StatusOr<std::string>()>;
 
 // One call, asked to stop after a random share of `whole`.
 absl::StatusOr<std::string> StopOnce(const Call& call, Clock::duration whole, Random* random) {
@@ -99,7 +100,8 @@ absl::StatusOr<std::string> StopOnce(const Call& call, Clock::duration whole, Ra
     std::this_thread::sleep_for(delay);
     source.request_stop();
   });
-  absl::StatusOr<std::string> result = call(source.get_token());
+  const StopScope stop_scope(source.get_token());
+  absl::StatusOr<std::string> result = call();
   stopper.join();
   return result;
 }
@@ -108,7 +110,7 @@ absl::StatusOr<std::string> StopOnce(const Call& call, Clock::duration whole, Ra
 // done all the same, with the same result.
 void ExpectCancelledOrTheSame(int num_stops, Random* random, const Call& call) {
   const Clock::time_point begin = Clock::now();
-  const absl::StatusOr<std::string> expected = call({});
+  const absl::StatusOr<std::string> expected = call();
   const Clock::duration whole = Clock::now() - begin;
   ASSERT_THAT(expected, IsOk());
   for (int i = 0; i < num_stops; ++i) {
@@ -116,16 +118,14 @@ void ExpectCancelledOrTheSame(int num_stops, Random* random, const Call& call) {
     if (result.ok()) {
       EXPECT_EQ(*result, *expected);
     } else {
-      EXPECT_THAT(result, StatusIs(kCancelled, HasSubstr("options.stop")));
+      EXPECT_THAT(result, StatusIs(kCancelled, HasSubstr("stopped")));
     }
   }
 }
 
 Call FittingAll(const TestScene& scene, const FitOptions& options) {
-  return [&scene, options](const std::stop_token& stop) {
-    FitOptions stoppable = options;
-    stoppable.stop = stop;
-    return TextOfAll(FitLights(scene.View(), scene.lights, kMap, stoppable));
+  return [&scene, options]() {
+    return TextOfAll(FitLights(scene.View(), scene.lights, kMap, options));
   };
 }
 
@@ -156,8 +156,7 @@ TEST(StopMoments, SummariesAndFiguresAreCancelledOrTheSameWheneverItIsAskedFor) 
   const Summary summary = *Summarize(readback, light);
   FitOptions options;
   const auto expect = [&](const std::function<absl::StatusOr<std::string>()>& call) {
-    ExpectCancelledOrTheSame(6, &random, [&](const std::stop_token& stop) {
-      options.stop = stop;
+    ExpectCancelledOrTheSame(6, &random, [&]() {
       return call();
     });
   };
@@ -174,8 +173,7 @@ TEST(StopMoments, CoversOfCloseLampsAreCancelledOrTheSameWheneverItIsAskedFor) {
   const testing::HangingLamp lamp(640, 360);
   FitOptions options;
   options.search = Search::kFocused;
-  ExpectCancelledOrTheSame(20, &random, [&](const std::stop_token& stop) {
-    options.stop = stop;
+  ExpectCancelledOrTheSame(20, &random, [&]() {
     return TextOfResult(FitLight(lamp.readback.View(), lamp.light, kMap, options));
   });
 }
@@ -184,9 +182,8 @@ TEST(StopMoments, TolerancesAreCancelledOrTheSameWheneverItIsAskedFor) {
   Random random(33);
   const TestScene scene(/*seed=*/3, /*num_lights=*/1);
   for (const auto kind : {Tolerance::Kind::kRms, Tolerance::Kind::kP99}) {
-    ExpectCancelledOrTheSame(5, &random, [&](const std::stop_token& stop) {
+    ExpectCancelledOrTheSame(5, &random, [&]() {
       FitOptions options;
-      options.stop = stop;
       return TextOfResult(
           MeetTolerance(scene.View(), scene.lights[0], {kind, 1.0, 1.0}, {}, options));
     });
@@ -204,8 +201,7 @@ TEST(StopMoments, AllocationsAreCancelledOrTheSameWheneverItIsAskedFor) {
     lights.push_back({light, Summarize(scene.View(), light, options), 1.0});
   }
   ExpectCancelledOrTheSame(
-      4, &random, [&](const std::stop_token& stop) -> absl::StatusOr<std::string> {
-        options.stop = stop;
+      4, &random, [&]() -> absl::StatusOr<std::string> {
         const absl::StatusOr<Allocation> allocation =
             AllocateBudget(lights, int64_t{2048} * 2048, {}, options);
         if (!allocation.ok()) return allocation.status();
@@ -232,12 +228,7 @@ class Walk {
   }
 
   // Every other frame brings the lights in another order, and one of them only comes and goes.
-  absl::StatusOr<std::string> Update(int frame,
-                                     const std::stop_token& stop,
-                                     Tracker* tracker) const {
-    TrackerOptions options = tracker->options();
-    options.fit.stop = stop;
-    tracker->set_options(options);
+  absl::StatusOr<std::string> Update(int frame, Tracker* tracker) const {
     std::vector<Light> lights(lights_.begin(), lights_.end() - (frame % 3 == 2 ? 1 : 0));
     if (frame % 2 == 1) std::swap(lights.front(), lights.back());
     return TextOfAll(tracker->Update(views_[frame].View(), lights, kMap));
@@ -262,19 +253,21 @@ TEST(StopMoments, TrackerGoesOnAsIfTheStoppedFrameHadNotBeen) {
     int num_cancelled = 0;
     for (int frame = 0; frame < Walk::kNumFrames; ++frame) {
       const Clock::time_point begin = Clock::now();
-      const absl::StatusOr<std::string> expected = walk.Update(frame, {}, &steady);
+      const absl::StatusOr<std::string> expected = walk.Update(frame, &steady);
       const Clock::duration whole = Clock::now() - begin;
       ASSERT_THAT(expected, IsOk());
-      EXPECT_THAT(walk.Update(frame, beforehand.get_token(), &stopped),
-                  StatusIs(kCancelled, HasSubstr("light")));
+      {
+        const StopScope stop_scope(beforehand.get_token());
+        EXPECT_THAT(walk.Update(frame, &stopped), StatusIs(kCancelled, HasSubstr("light")));
+      }
       // In the middle of it; a frame that comes through all the same is the frame.
-      const auto update = [&](const std::stop_token& stop) {
-        return walk.Update(frame, stop, &stopped);
+      const auto update = [&]() {
+        return walk.Update(frame, &stopped);
       };
       absl::StatusOr<std::string> result = StopOnce(update, whole, &random);
       if (absl::IsCancelled(result.status())) {
         ++num_cancelled;
-        result = walk.Update(frame, {}, &stopped);
+        result = walk.Update(frame, &stopped);
       }
       ASSERT_THAT(result, IsOk());
       EXPECT_EQ(*result, *expected) << "frame " << frame;

@@ -41,19 +41,19 @@ std::stop_token Stopped() {
   return source.get_token();
 }
 
-FitOptions StoppedOptions(FitOptions options = {}) {
-  options.stop = Stopped();
-  return options;
-}
-
 TEST(Stop, AskedForBeforehandEndsEveryCallOnAReadback) {
   const TestScene scene(/*seed=*/1, /*num_lights=*/2);
   const Light& light = scene.lights[0];
   const Readback readback = scene.View();
-  const FitOptions options = StoppedOptions();
+  const FitOptions options;
   const absl::StatusOr<LightMatrix> fit = FitLight(readback, light, kMap);
   ASSERT_THAT(fit, IsOk());
-  const auto is_stopped = StatusIs(kCancelled, AllOf(HasSubstr("stop"), HasSubstr("options.stop")));
+  const absl::StatusOr<Receivers> receivers = FindReceivers(readback, ~0u, options.samples);
+  ASSERT_THAT(receivers, IsOk());
+  const absl::StatusOr<PreparedLight> prepared = PrepareLight(*receivers, light, {});
+  ASSERT_THAT(prepared, IsOk());
+  const auto is_stopped = StatusIs(kCancelled, HasSubstr("stopped"));
+  const StopScope stopped(Stopped());
 
   const LightMatrices fits = FitLights(readback, scene.lights, kMap, options);
   ASSERT_EQ(fits.size(), 2u);
@@ -64,22 +64,18 @@ TEST(Stop, AskedForBeforehandEndsEveryCallOnAReadback) {
   EXPECT_THAT(SummarizeForAnyAspect(readback, light, options), is_stopped);
   EXPECT_THAT(EvaluateMatrix(readback, light, fit->map_from_world, kMap, options), is_stopped);
   EXPECT_THAT(
-      ForetellWrongShare(readback, light, fit->map_from_world, kMap, options.samples, options.stop),
+      ForetellWrongShare(readback, light, fit->map_from_world, kMap, options.samples),
       is_stopped);
   for (const auto kind : {Tolerance::Kind::kRms, Tolerance::Kind::kP99, Tolerance::Kind::kWorst}) {
     EXPECT_THAT(MeetTolerance(readback, light, {kind, 1.0, 1.0}, {}, options), is_stopped);
   }
 
-  EXPECT_THAT(FindReceivers(readback, ~0u, options.samples, options.stop), is_stopped);
-  const absl::StatusOr<Receivers> receivers = FindReceivers(readback, ~0u, options.samples);
-  ASSERT_THAT(receivers, IsOk());
+  EXPECT_THAT(FindReceivers(readback, ~0u, options.samples), is_stopped);
   const auto names_light = StatusIs(kCancelled, HasSubstr("light \"" + light.name + "\""));
   for (const Cover cover : {Cover::kReceivers, Cover::kShadowed}) {
-    EXPECT_THAT(CoverReceivers(*receivers, light, cover, options.stop), names_light);
+    EXPECT_THAT(CoverReceivers(*receivers, light, cover), names_light);
   }
   EXPECT_THAT(PrepareLight(*receivers, light, options), names_light);
-  const absl::StatusOr<PreparedLight> prepared = PrepareLight(*receivers, light, {});
-  ASSERT_THAT(prepared, IsOk());
   const SearchInputs inputs = {light, prepared->summary, &prepared->samples, &*receivers};
   EXPECT_THAT(FitInputs(inputs, kMap, options), names_light);
   EXPECT_THAT(MatrixOfMap(inputs, Eigen::Matrix3d::Identity(), kMap, options), names_light);
@@ -102,22 +98,43 @@ TEST(Stop, AskedForBeforehandEndsEveryCallOnASummary) {
     options.metric = metric;
     const absl::StatusOr<Summary> summary = Summarize(scene.View(), light, options);
     ASSERT_THAT(summary, IsOk());
-    const FitOptions stopped = StoppedOptions(options);
+    const StopScope stopped(Stopped());
     const auto names_light = StatusIs(kCancelled, HasSubstr("light \"" + light.name + "\""));
-    EXPECT_THAT(Fit(*summary, light, kMap, stopped), names_light);
-    EXPECT_THAT(FindMapShapes(*summary, light, stopped), names_light);
-    EXPECT_THAT(AllocateBudget({{light, *summary, 1.0}}, 1 << 20, {}, stopped),
+    EXPECT_THAT(Fit(*summary, light, kMap, options), names_light);
+    EXPECT_THAT(FindMapShapes(*summary, light, options), names_light);
+    EXPECT_THAT(AllocateBudget({{light, *summary, 1.0}}, 1 << 20, {}, options),
                 StatusIs(kCancelled, HasSubstr("allocation")));
     if (metric == Metric::kL2) {
-      EXPECT_THAT(MeetTolerance(*summary, light, {}, {}, stopped), names_light);
+      EXPECT_THAT(MeetTolerance(*summary, light, {}, {}, options), names_light);
     }
   }
+}
+
+TEST(Stop, ScopesNestAndEndWithTheirBlocks) {
+  std::stop_source outer_source, inner_source;
+  EXPECT_FALSE(StopPossible());
+  {
+    const StopScope outer(outer_source.get_token());
+    {
+      const StopScope inner(inner_source.get_token());
+      EXPECT_TRUE(StopPossible());
+      EXPECT_FALSE(StopRequested());
+      outer_source.request_stop();
+      EXPECT_TRUE(StopRequested());
+    }
+    EXPECT_TRUE(StopRequested());
+    std::thread([] { EXPECT_FALSE(StopRequested()); }).join();
+  }
+  EXPECT_FALSE(StopRequested());
+  const StopScope never{std::stop_token()};
+  EXPECT_FALSE(StopPossible());
 }
 
 // What cannot be used is said whether or not there was time to use it.
 TEST(Stop, WrongInputsAreStillCalledWrong) {
   const TestScene scene(/*seed=*/1, /*num_lights=*/1);
-  FitOptions options = StoppedOptions();
+  const StopScope stopped(Stopped());
+  FitOptions options;
   options.min_w = -1.0;
   const auto is_wrong = StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("min_w"));
   EXPECT_THAT(FitLight(scene.View(), scene.lights[0], kMap, options), is_wrong);
@@ -125,12 +142,12 @@ TEST(Stop, WrongInputsAreStillCalledWrong) {
   tracker_options.fit = options;
   Tracker tracker(tracker_options);
   EXPECT_THAT(tracker.Update(scene.View(), scene.lights, kMap).front(), is_wrong);
-  tracker_options.fit = StoppedOptions();
+  tracker_options.fit = {};
   tracker.set_options(tracker_options);
   EXPECT_THAT(tracker.Update(scene.View(), scene.lights, {0, 0}).front(),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("map = 0x0")));
   EXPECT_THAT(tracker.Update(scene.View(), scene.lights, kMap).front(),
-              StatusIs(kCancelled, HasSubstr("options.stop")));
+              StatusIs(kCancelled, HasSubstr("stopped")));
   EXPECT_TRUE(tracker.state().empty());
 }
 
@@ -139,8 +156,8 @@ TEST(Stop, NoAxisIsEvaluatedOnceItIsAskedFor) {
   ASSERT_FALSE(stations.empty());
   for (const testing::FitStation& station : stations) {
     const AffineFit start = station.Start();
-    AffineProblem problem = station.problem;
-    problem.stop = Stopped();
+    const AffineProblem& problem = station.problem;
+    const StopScope stopped(Stopped());
     SummaryEvaluator evaluator(station.summary, problem, testing::kMinW);
     EXPECT_FALSE(evaluator.Evaluate(Eigen::Vector3d::UnitZ()).has_value());
     RotationLineSearch(evaluator, start, /*rounds=*/3);
@@ -169,7 +186,7 @@ TEST(Stop, EndsAFitThatWouldTakeHours) {
   FitOptions options;
   options.grid_directions = 1'000'000'000;
   std::stop_source source;
-  options.stop = source.get_token();
+  const StopScope stop_scope(source.get_token());
   std::thread stopper([&source] {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
     source.request_stop();
@@ -182,9 +199,10 @@ TEST(Stop, EndsAFitThatWouldTakeHours) {
 // The station that chooses sizes is valid, if not good, however early it is stopped.
 TEST(Stop, SizesChosenInHasteKeepTheBudget) {
   const MapShapes shapes = {{{4.0, 1.0}}, 0.0, 0.0};
-  const std::vector<RatedSize> sizes = RateSizes(shapes, 1.0, {}, Stopped());
+  const StopScope stopped(Stopped());
+  const std::vector<RatedSize> sizes = RateSizes(shapes, 1.0, {});
   ASSERT_FALSE(sizes.empty());
-  EXPECT_EQ(ChooseSizes({sizes, sizes}, 1 << 20, Stopped()), std::vector<size_t>({0, 0}));
+  EXPECT_EQ(ChooseSizes({sizes, sizes}, 1 << 20), std::vector<size_t>({0, 0}));
 }
 
 }  // namespace

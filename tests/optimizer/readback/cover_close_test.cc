@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <memory_resource>
 #include <optional>
-#include <stop_token>
 #include <vector>
 
 #include "base/scratch.h"
@@ -124,8 +123,7 @@ TEST(CoverCloseBy, LowestRayIsThatOfAllPixels) {
     lamp.light.position += random.LogUniform(1e-3, 10.0) * random.InCube(1.0);
     const Receivers receivers = *FindReceivers(lamp.readback.View(), ~0u, {});
     const Matrix34d ray_from_screen = RayFromWorld(lamp.light) * receivers.world_from_screen;
-    const std::stop_token never;
-    const CoveredSurfaces covered = {receivers, receivers.tiles, never};
+    const CoveredSurfaces covered = {receivers, receivers.tiles};
     const std::vector<Eigen::Vector3d> rays = RaysOf(receivers, lamp.light, Cover::kReceivers);
     const UnitRaySum sum = SumOfUnitRays(covered, ray_from_screen);
     EXPECT_EQ(sum.count, static_cast<int64_t>(rays.size()));

@@ -224,13 +224,12 @@ TEST(AsyncOptimizer, EndsInTheMiddleOfAFrameThatWouldTakeHours) {
   }
 }
 
-TEST(AsyncOptimizer, StopOfItsOptionsDoesNotCount) {
+TEST(AsyncOptimizer, StopScopesOfItsCallersDoNotReachIt) {
   const BoxWalk walk(/*seed=*/25, /*num_lights=*/1, /*num_views=*/1, 48, 48);
   std::stop_source stopped;
   stopped.request_stop();
-  TrackerOptions options;
-  options.fit.stop = stopped.get_token();
-  AsyncOptimizer optimizer = StartOptimizer(options);
+  const StopScope stop_scope(stopped.get_token());
+  AsyncOptimizer optimizer = StartOptimizer(TrackerOptions());
   EXPECT_THAT(RunFrame(optimizer, walk.views[0], walk.lights, 1).lights[0].status, IsOk());
 }
 
