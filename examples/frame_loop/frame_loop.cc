@@ -8,6 +8,7 @@
 #include "optimizer/tracking/async_optimizer.h"
 #include "render/readback_image.h"
 #include "render/scene_generator.h"
+#include "geometry/clip.h"
 
 int main() {  // NOLINT(bugprone-exception-escape): scene and cameras are good ones
   const lightfit::RayCaster engine =

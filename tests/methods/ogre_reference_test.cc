@@ -15,6 +15,7 @@
 #include "methods/plane_optimal.h"
 #include "methods/view_body.h"
 #include "tests/testing/matchers.h"
+#include "geometry/clip.h"
 
 namespace lightfit {
 namespace {

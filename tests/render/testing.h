@@ -19,6 +19,7 @@
 #include "tests/testing/box_scene.h"
 #include "tests/testing/process.h"
 #include "tests/testing/random_cases.h"
+#include "geometry/map_size.h"
 
 namespace lightfit::testing {
 

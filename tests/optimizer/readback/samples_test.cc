@@ -8,6 +8,7 @@
 #include "optimizer/readback/surfaces.h"
 #include "tests/testing/matchers.h"
 #include "tests/testing/plane_readback.h"
+#include "optimizer/fit_options.h"
 
 namespace lightfit {
 namespace {
