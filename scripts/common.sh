@@ -2,6 +2,10 @@
 # root, never run.
 # shellcheck shell=bash
 
+# A clone in another folder finds this one's objects in ccache: paths are hashed relative to the
+# repository, and neither the precompiled headers' own flags nor __TIME__ stand in the way.
+export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1 CCACHE_SLOPPINESS=pch_defines,time_macros
+
 say() { printf '\n== %s\n' "$*" >&2; }
 
 die() {
@@ -59,17 +63,48 @@ num_jobs() {
   echo "$jobs"
 }
 
-# build PRESET [TARGET...]: configures when that has not been done, then builds.
-build() {
-  local preset=$1 stamp=build/$1/.configured
+# The parts of a build that a verb may leave out: what switches them on, and what they need.
+#
+# One folder for each preset, and not one for each verb: `./run demo` configures the program alone,
+# so that nothing else need be installed; `./run test` adds parts to the same build/release, whose
+# libraries are compiled already, with the same flags and precompiled headers.
+parts=(tests python bench heavy_examples)
+declare -A option_of=(
+  [tests]=LIGHTFIT_BUILD_TESTS [python]=LIGHTFIT_BUILD_PYTHON [bench]=LIGHTFIT_BUILD_BENCH
+  [heavy_examples]=LIGHTFIT_TEST_HEAVY_EXAMPLES)
+declare -A packages_of=(
+  [tests]=packages-test.txt [python]=packages-test.txt [bench]=packages-bench.txt
+  [heavy_examples]=packages-examples.txt)
+
+# configure PRESET [+PART...] [-PART...]: with these parts, without those, and others as they were:
+# absent from a new build. Does nothing when all that has been done.
+configure() {
+  local preset=$1 cache=build/$1/CMakeCache.txt stamp=build/$1/.configured part had want
   shift
-  need_packages packages.txt
-  if [[ ! -e build/$preset/build.ninja || ! $stamp -nt CMakePresets.json ]]; then
-    say "configuring build/$preset"
-    cmake --preset "$preset" || die "configuring failed, see above. If build/$preset comes from" \
-      "another machine or folder, delete it and call again."
-    touch "$stamp"
-  fi
+  local words=" $* " options=() lists=(packages.txt) fresh=()
+  if [[ ! -e build/$preset/build.ninja || ! $stamp -nt CMakePresets.json ]]; then fresh=(--fresh); fi
+  local changed=${#fresh[@]}
+  for part in "${parts[@]}"; do
+    had=OFF want=OFF
+    if grep -qs "^${option_of[$part]}:BOOL=ON" "$cache"; then had=ON want=ON; fi
+    if [[ $words == *" +$part "* ]]; then want=ON; fi
+    if [[ $words == *" -$part "* ]]; then want=OFF; fi
+    if [[ $want != "$had" ]]; then changed=1; fi
+    if [[ $want == ON ]]; then lists+=("${packages_of[$part]}"); fi
+    options+=("-D${option_of[$part]}=$want")
+  done
+  need_packages "${lists[@]}"
+  ((changed)) || return 0
+  say "configuring build/$preset"
+  cmake "${fresh[@]}" --preset "$preset" "${options[@]}" || die "configuring failed, see above." \
+    "If build/$preset comes from another machine or folder, delete it and call again."
+  touch "$stamp"
+}
+
+# build PRESET [TARGET...]: as configured.
+build() {
+  local preset=$1
+  shift
   nice ninja -C "build/$preset" -j "$(num_jobs)" "$@"
 }
 

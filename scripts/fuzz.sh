@@ -134,7 +134,8 @@ done
 [[ $seconds =~ ^[1-9][0-9]*$ && $jobs =~ ^[1-9][0-9]*$ ]] ||
   die "fuzz: want whole numbers above 0 for --seconds and --jobs"
 
-need_packages packages-fuzz.txt
+need_packages packages.txt packages-fuzz.txt
+configure fuzz -tests -python -bench
 build fuzz "${targets[@]/#/fuzz_}" >/dev/null
 case $action in
   fuzz_all) fuzz_all "$seconds" "$jobs" "${targets[@]}" ;;
