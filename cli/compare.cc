@@ -17,6 +17,7 @@
 #include "cli/reports/fit_report.h"
 #include "jobs/compare/json.h"
 #include "picture/compare_page.h"
+#include "picture/png.h"
 
 namespace lightfit {
 namespace {

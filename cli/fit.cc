@@ -15,6 +15,7 @@
 #include "cli/reports/fit_report.h"
 #include "jobs/fit_comparison.h"
 #include "picture/fit_page.h"
+#include "picture/png.h"
 #include "picture/text.h"
 #include "wire/result_json.h"
 

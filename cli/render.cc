@@ -19,6 +19,8 @@
 #include "cli/exit_code.h"
 #include "cli/flags/scene_flags.h"
 #include "io/readback_exr_write.h"
+#include "picture/canvas.h"
+#include "picture/png.h"
 #include "picture/render_page.h"
 #include "render/readback_image.h"
 #include "render/sight.h"
@@ -94,6 +96,10 @@ void DeclareFlags(CLI::App* app, RenderFlags* flags) {
   app->footer(kExamples);
 }
 
+PixelSize PictureSize(const RenderFlags& flags) {
+  return flags.picture_size.width > 0 ? flags.picture_size : flags.size;
+}
+
 absl::Status CheckOutputs(const RenderFlags& flags) {
   if (flags.output_path.empty() && flags.picture_path.empty()) {
     return absl::InvalidArgumentError(
@@ -104,6 +110,14 @@ absl::Status CheckOutputs(const RenderFlags& flags) {
                                    std::pair{"--lights-out", flags.lights_path}}) {
     if (path.empty()) continue;
     if (absl::Status status = CheckWritable(flag, path); !status.ok()) return status;
+  }
+  const PixelSize picture = PictureSize(flags);
+  if (!flags.picture_path.empty() && std::max(picture.width, picture.height) > kMaxCanvasSide) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("--picture-size %dx%d: want at most %d pixels along each side of a picture",
+                        picture.width,
+                        picture.height,
+                        kMaxCanvasSide));
   }
   return absl::OkStatus();
 }
@@ -149,7 +163,7 @@ struct Outcome {
   int64_t num_surface = 0;
   std::vector<LightingCounts> counts;  // per light
   std::string warning;                 // of CheckSight()
-  Canvas picture = Canvas(1, 1, Rgb());
+  Image picture;
 };
 
 absl::StatusOr<Outcome> Render(const RenderFlags& flags, const Inputs& inputs) {
@@ -175,7 +189,7 @@ absl::StatusOr<Outcome> Render(const RenderFlags& flags, const Inputs& inputs) {
   }
   if (!draws) return outcome;
   progress.Begin("drawing");
-  const PixelSize size = flags.picture_size.width > 0 ? flags.picture_size : flags.size;
+  const PixelSize size = PictureSize(flags);
   const absl::StatusOr<Camera> camera = MakeViewCamera(flags.scene, size.width, size.height);
   if (!camera.ok()) return camera.status();
   const absl::StatusOr<SurfaceImage> surfaces = RenderSurfaces(caster, *camera);
@@ -254,7 +268,7 @@ absl::Status WriteOutputs(const RenderFlags& flags, const Inputs& inputs, const 
     }
   }
   if (flags.picture_path.empty()) return absl::OkStatus();
-  return WritePng(outcome.picture, flags.picture_path);
+  return WritePng(Canvas(outcome.picture), flags.picture_path);
 }
 
 int Fail(const absl::Status& status) {

@@ -10,7 +10,7 @@
 #include "cli/exit_code.h"
 #include "cli/reports/shot_report.h"
 #include "jobs/shot/run.h"
-#include "picture/canvas.h"
+#include "picture/png.h"
 #include "picture/shot_page.h"
 #include "picture/text.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/number.h"
+#include "absl/strings/str_cat.h"
 #include "picture/theme.h"
 
 namespace lightfit {
@@ -25,11 +25,11 @@ void DrawBarChart(int x,
                   Canvas* canvas) {
   if (bars.empty()) return;
   int name_width = 0, value_width = 0;
-  double longest = 0.0;
+  int64_t longest = 0;
   const TextStyle style = {.size_px = kTextSize, .color = kTextColor};
   for (const Bar& bar : bars) {
     name_width = std::max(name_width, typeface.Width(bar.name, style));
-    value_width = std::max(value_width, typeface.Width(FigureText(bar.value), style));
+    value_width = std::max(value_width, typeface.Width(absl::StrCat(bar.value), style));
     longest = std::max(longest, bar.value);
   }
   const int pitch = std::clamp(height / static_cast<int>(bars.size()), 2, kMaxPitch);
@@ -39,11 +39,13 @@ void DrawBarChart(int x,
   for (size_t i = 0; i < bars.size(); ++i) {
     const int bar_y = y + static_cast<int>(i) * pitch;
     const int length =
-        longest > 0.0 ? static_cast<int>(std::lround(room * bars[i].value / longest)) : 0;
+        longest > 0 ? static_cast<int>(std::lround(room * static_cast<double>(bars[i].value) /
+                                                   static_cast<double>(longest)))
+                    : 0;
     const int baseline = bar_y + bar_height / 2 + kTextSize / 3;
     typeface.Draw(x, baseline, bars[i].name, style, canvas);
     canvas->FillRectangle(bar_x, bar_y, length, bar_height, bars[i].color);
-    typeface.Draw(bar_x + length + kTextGap, baseline, FigureText(bars[i].value), style, canvas);
+    typeface.Draw(bar_x + length + kTextGap, baseline, absl::StrCat(bars[i].value), style, canvas);
   }
 }
 

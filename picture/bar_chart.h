@@ -1,8 +1,9 @@
 // picture/bar_chart.h
 //
-// Numbers as horizontal bars, one below the other.
+// Counts as horizontal bars, one below the other.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,7 @@ namespace lightfit {
 
 struct Bar {
   std::string name;
-  double value = 0.0;  // >= 0, finite
+  int64_t value = 0;  // >= 0
   Rgb color;
 };
 

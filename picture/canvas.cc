@@ -1,62 +1,112 @@
 #include "picture/canvas.h"
 
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <cmath>
-#include <memory>
-
-#include "absl/strings/str_cat.h"
-#include "base/output_file.h"
+#include <cstdint>
+#include <optional>
+#include <utility>
 
 namespace lightfit {
 namespace {
 
-// Share of a pixel that a shape covers whose edge is `inside_px` away from the pixel's centre.
-float Coverage(double inside_px) {
-  return static_cast<float>(std::clamp(inside_px + 0.5, 0.0, 1.0));
+uint32_t PackedPixel(const Rgb& color) {
+  const auto byte = [](float value) {
+    return static_cast<uint32_t>(std::lround(255 * std::clamp(value, 0.0f, 1.0f)));
+  };
+  return 0xff000000u | byte(color.r) << 16 | byte(color.g) << 8 | byte(color.b);
 }
 
-// First and one-past-last pixel that the interval [low - reach, high + reach] touches.
-int FirstPixel(double low, double reach) {
-  return static_cast<int>(std::floor(std::max(low - reach, 0.0)));
+// Row `y` of a surface of CAIRO_FORMAT_RGB24: one word per pixel, 0xXXRRGGBB.
+uint32_t* RowOf(cairo_surface_t* surface, int y) {
+  unsigned char* data = cairo_image_surface_get_data(surface);
+  // Cairo aligns rows to words.
+  return reinterpret_cast<uint32_t*>(data + static_cast<ptrdiff_t>(y) *
+                                                cairo_image_surface_get_stride(surface));
 }
-int EndPixel(double high, double reach, int size) {
-  return static_cast<int>(std::ceil(std::clamp(high + reach, 0.0, static_cast<double>(size))));
+
+// The part of the line within `reach` of [0, width] x [0, height]. Cairo's coordinates are fixed
+// point numbers of 24 bits before the point: what is farther away would wrap around.
+std::optional<std::pair<Eigen::Vector2d, Eigen::Vector2d>> ClippedLine(const Eigen::Vector2d& from,
+                                                                       const Eigen::Vector2d& to,
+                                                                       const Eigen::Vector2d& size,
+                                                                       double reach) {
+  const Eigen::Vector2d along = to - from;
+  if (!from.allFinite() || !along.allFinite()) return std::nullopt;
+  double enter = 0, leave = 1;  // shares of the line
+  for (int axis = 0; axis < 2; ++axis) {
+    const double low = -reach - from[axis], high = size[axis] + reach - from[axis];
+    if (along[axis] == 0) {
+      if (low > 0 || high < 0) return std::nullopt;
+      continue;
+    }
+    const double at_low = low / along[axis], at_high = high / along[axis];
+    enter = std::max(enter, std::min(at_low, at_high));
+    leave = std::min(leave, std::max(at_low, at_high));
+  }
+  if (!(enter <= leave)) return std::nullopt;
+  // What comes from very far comes rounded.
+  const auto point = [&](double share) -> Eigen::Vector2d {
+    return (from + share * along).array().max(-reach).min(size.array() + reach).matrix();
+  };
+  return std::pair<Eigen::Vector2d, Eigen::Vector2d>(point(enter), point(leave));
 }
 
 }  // namespace
 
-Rgb HexColor(uint32_t rgb) {
-  const auto channel = [rgb](int shift) { return ((rgb >> shift) & 0xff) / 255.0f; };
-  return {channel(16), channel(8), channel(0)};
-}
-
-Rgb Mix(Rgb a, Rgb b, float share) {
-  return {a.r + share * (b.r - a.r), a.g + share * (b.g - a.g), a.b + share * (b.b - a.b)};
-}
-
 Canvas::Canvas(int width, int height, Rgb background)
-    : width_(width), height_(height), pixels_(static_cast<size_t>(width) * height, background) {}
+    : width_(width),
+      height_(height),
+      surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height)),
+      context_(cairo_create(surface_.get())) {
+  SetColor(background, 1);
+  cairo_paint(context_.get());
+}
 
-void Canvas::Blend(int x, int y, Rgb color, float opacity) {
-  if (x < 0 || y < 0 || x >= width_ || y >= height_) return;
-  Rgb& pixel = pixels_[Index(x, y)];
-  pixel = Mix(pixel, color, opacity);
+Canvas::Canvas(const Image& image) : Canvas(image.width(), image.height(), Rgb()) {
+  DrawImage(0, 0, image);
+}
+
+void Canvas::SetColor(Rgb color, float opacity) {
+  cairo_set_source_rgba(context_.get(), color.r, color.g, color.b, opacity);
 }
 
 void Canvas::FillRectangle(int x, int y, int width, int height, Rgb color, float opacity) {
-  for (int row = y; row < y + height; ++row) {
-    for (int column = x; column < x + width; ++column) Blend(column, row, color, opacity);
-  }
+  SetColor(color, opacity);
+  cairo_rectangle(context_.get(), x, y, width, height);
+  cairo_fill(context_.get());
 }
 
-void Canvas::DrawImage(int x, int y, const Canvas& image) {
-  for (int row = 0; row < image.height(); ++row) {
-    for (int column = 0; column < image.width(); ++column) {
-      Blend(x + column, y + row, image.At(column, row));
+void Canvas::DrawImage(int x, int y, const Image& image) {
+  cairo_surface_flush(surface_.get());
+  if (cairo_image_surface_get_data(surface_.get()) == nullptr) return;
+  const int x_end = std::min(width_, x + image.width());
+  for (int row = std::max(y, 0); row < std::min(height_, y + image.height()); ++row) {
+    uint32_t* const pixels = RowOf(surface_.get(), row);
+    for (int column = std::max(x, 0); column < x_end; ++column) {
+      pixels[column] = PackedPixel(image.At(column - x, row - y));
     }
   }
+  cairo_surface_mark_dirty(surface_.get());
+}
+
+void Canvas::DrawCanvas(int x, int y, const Canvas& canvas) {
+  cairo_set_source_surface(context_.get(), canvas.surface(), x, y);
+  cairo_rectangle(context_.get(), x, y, canvas.width(), canvas.height());
+  cairo_fill(context_.get());
+}
+
+void Canvas::AddLine(const Eigen::Vector2d& from, const Eigen::Vector2d& to, double width_px) {
+  const auto line = ClippedLine(from, to, {width_, height_}, width_px + 1);
+  if (!line.has_value()) return;
+  cairo_move_to(context_.get(), line->first.x(), line->first.y());
+  cairo_line_to(context_.get(), line->second.x(), line->second.y());
+}
+
+void Canvas::StrokePath(double width_px, Rgb color, float opacity) {
+  SetColor(color, opacity);
+  cairo_set_line_width(context_.get(), width_px);
+  cairo_set_line_cap(context_.get(), CAIRO_LINE_CAP_ROUND);
+  cairo_stroke(context_.get());
 }
 
 void Canvas::DrawLine(const Eigen::Vector2d& from,
@@ -64,23 +114,8 @@ void Canvas::DrawLine(const Eigen::Vector2d& from,
                       double width_px,
                       Rgb color,
                       float opacity) {
-  if (!from.allFinite() || !to.allFinite()) return;
-  const Eigen::Vector2d along = to - from;
-  const double squared_length = along.squaredNorm();
-  const double reach = width_px / 2 + 1;
-  const int x_end = EndPixel(std::max(from.x(), to.x()), reach, width_);
-  const int y_end = EndPixel(std::max(from.y(), to.y()), reach, height_);
-  for (int y = FirstPixel(std::min(from.y(), to.y()), reach); y < y_end; ++y) {
-    for (int x = FirstPixel(std::min(from.x(), to.x()), reach); x < x_end; ++x) {
-      const Eigen::Vector2d center(x + 0.5, y + 0.5);
-      const double share = squared_length > 0
-                               ? std::clamp((center - from).dot(along) / squared_length, 0.0, 1.0)
-                               : 0.0;
-      const double distance = (center - from - share * along).norm();
-      const float coverage = Coverage(width_px / 2 - distance);
-      if (coverage > 0) Blend(x, y, color, opacity * coverage);
-    }
-  }
+  AddLine(from, to, width_px);
+  StrokePath(width_px, color, opacity);
 }
 
 void Canvas::DrawPolygon(absl::Span<const Eigen::Vector2d> corners,
@@ -88,74 +123,31 @@ void Canvas::DrawPolygon(absl::Span<const Eigen::Vector2d> corners,
                          Rgb color,
                          float opacity) {
   for (size_t i = 0; i < corners.size(); ++i) {
-    DrawLine(corners[i], corners[(i + 1) % corners.size()], width_px, color, opacity);
+    AddLine(corners[i], corners[(i + 1) % corners.size()], width_px);
   }
+  StrokePath(width_px, color, opacity);
 }
 
 void Canvas::DrawDot(const Eigen::Vector2d& center, double radius_px, Rgb color, float opacity) {
-  if (!center.allFinite()) return;
-  const int x_end = EndPixel(center.x(), radius_px + 1, width_);
-  const int y_end = EndPixel(center.y(), radius_px + 1, height_);
-  for (int y = FirstPixel(center.y(), radius_px + 1); y < y_end; ++y) {
-    for (int x = FirstPixel(center.x(), radius_px + 1); x < x_end; ++x) {
-      const double distance = (Eigen::Vector2d(x + 0.5, y + 0.5) - center).norm();
-      const float coverage = Coverage(radius_px - distance);
-      if (coverage > 0) Blend(x, y, color, opacity * coverage);
-    }
-  }
+  // A line without length is a dot; it is clipped like any other.
+  DrawLine(center, center, 2 * radius_px, color, opacity);
 }
 
-Canvas Magnified(const Canvas& canvas, int factor) {
-  Canvas large(canvas.width() * factor, canvas.height() * factor, {});
-  for (int y = 0; y < large.height(); ++y) {
-    for (int x = 0; x < large.width(); ++x) {
-      large.Blend(x, y, canvas.At(x / factor, y / factor));
-    }
-  }
-  return large;
+Rgb Canvas::At(int x, int y) const {
+  cairo_surface_flush(surface_.get());
+  if (cairo_image_surface_get_data(surface_.get()) == nullptr) return {};
+  return HexColor(RowOf(surface_.get(), y)[x]);
 }
 
-Canvas Reduced(const Canvas& canvas, int factor) {
-  Canvas small((canvas.width() + factor - 1) / factor, (canvas.height() + factor - 1) / factor, {});
-  for (int y = 0; y < small.height(); ++y) {
-    for (int x = 0; x < small.width(); ++x) {
-      Rgb mean;
-      float num_pixels = 0;
-      for (int row = y * factor; row < std::min((y + 1) * factor, canvas.height()); ++row) {
-        for (int column = x * factor; column < std::min((x + 1) * factor, canvas.width());
-             ++column) {
-          num_pixels += 1;
-          mean = Mix(mean, canvas.At(column, row), 1 / num_pixels);
-        }
-      }
-      small.Blend(x, y, mean);
-    }
+Image Canvas::ToImage() const {
+  Image image(width_, height_, {});
+  cairo_surface_flush(surface_.get());
+  if (cairo_image_surface_get_data(surface_.get()) == nullptr) return image;
+  for (int y = 0; y < height_; ++y) {
+    const uint32_t* const pixels = RowOf(surface_.get(), y);
+    for (int x = 0; x < width_; ++x) image.Blend(x, y, HexColor(pixels[x]));
   }
-  return small;
-}
-
-absl::Status WritePng(const Canvas& canvas, const std::string& path) {
-  std::vector<uint8_t> bytes;
-  bytes.reserve(canvas.pixels().size() * 3);
-  for (const Rgb& pixel : canvas.pixels()) {
-    for (const float value : {pixel.r, pixel.g, pixel.b}) {
-      bytes.push_back(static_cast<uint8_t>(std::lround(255 * std::clamp(value, 0.0f, 1.0f))));
-    }
-  }
-  return WriteThroughTemporary(path, [&](const std::string& temporary) -> absl::Status {
-    const auto failure = [&](const std::string& reason) {
-      return absl::UnknownError(absl::StrCat("cannot write picture ", path, ": ", reason));
-    };
-    // The temporary name does not end in .png, so the format is named here.
-    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("png");
-    if (output == nullptr) return failure(OIIO::geterror());
-    const OIIO::ImageSpec spec(canvas.width(), canvas.height(), 3, OIIO::TypeDesc::UINT8);
-    if (!output->open(temporary, spec) ||
-        !output->write_image(OIIO::TypeDesc::UINT8, bytes.data()) || !output->close()) {
-      return failure(output->geterror());
-    }
-    return absl::OkStatus();
-  });
+  return image;
 }
 
 }  // namespace lightfit

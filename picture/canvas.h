@@ -1,46 +1,41 @@
 // picture/canvas.h
 //
-// A small picture to draw on: filled rectangles, antialiased lines and dots, other pictures.
+// A page to draw on: filled rectangles, antialiased lines and dots, images; text by text.h.
 // In:   colours in display space (sRGB values 0 ... 1), pixel coordinates, y down.
-// Out:  pixels(), and a PNG file through WritePng().
+// Out:  its pixels, 8 bits per channel, to look at or to store (png.h).
+//
+// Cairo draws. A page that Cairo cannot hold stays empty, and WritePng() says why.
 #pragma once
 
-#include <Eigen/Core>
-#include <cstdint>
-#include <string>
-#include <vector>
+#include <cairo.h>
 
-#include "absl/status/status.h"
+#include <Eigen/Core>
+#include <memory>
+
 #include "absl/types/span.h"
+#include "picture/color.h"
+#include "picture/image.h"
 
 namespace lightfit {
 
-struct Rgb {
-  float r = 0, g = 0, b = 0;
-};
-
-// 0xRRGGBB, as in a style sheet.
-Rgb HexColor(uint32_t rgb);
-
-// `a` at share = 0, `b` at share = 1.
-Rgb Mix(Rgb a, Rgb b, float share);
+// What Cairo can hold along a side, pixels.
+inline constexpr int kMaxCanvasSide = 32767;
 
 class Canvas {
  public:
   Canvas(int width, int height, Rgb background);
+  explicit Canvas(const Image& image);
 
   int width() const { return width_; }
   int height() const { return height_; }
-  const Rgb& At(int x, int y) const { return pixels_[Index(x, y)]; }
-  const std::vector<Rgb>& pixels() const { return pixels_; }
-  std::vector<Rgb>& pixels() { return pixels_; }
 
   // All drawing is clipped to the canvas. `opacity` is in 0 ... 1.
-  void Blend(int x, int y, Rgb color, float opacity = 1);
   void FillRectangle(int x, int y, int width, int height, Rgb color, float opacity = 1);
-  void DrawImage(int x, int y, const Canvas& image);
+  void DrawImage(int x, int y, const Image& image);
+  void DrawCanvas(int x, int y, const Canvas& canvas);
 
-  // Pixel (i, j) covers [i, i + 1] x [j, j + 1]. Antialiased by the distance to the shape's edge.
+  // Pixel (i, j) covers [i, i + 1] x [j, j + 1]. Lines have round ends, and a polygon covers no
+  // pixel twice. Nothing is drawn of a line or dot that is not finite.
   void DrawLine(const Eigen::Vector2d& from,
                 const Eigen::Vector2d& to,
                 double width_px,
@@ -52,20 +47,28 @@ class Canvas {
                    float opacity = 1);
   void DrawDot(const Eigen::Vector2d& center, double radius_px, Rgb color, float opacity = 1);
 
+  // What has been drawn so far; black where Cairo has no pixels.
+  Image ToImage() const;
+  Rgb At(int x, int y) const;
+
+  // For what draws through Cairo itself.
+  cairo_t* context() const { return context_.get(); }
+  cairo_surface_t* surface() const { return surface_.get(); }
+
  private:
-  size_t Index(int x, int y) const { return static_cast<size_t>(y) * width_ + x; }
+  struct Destroy {
+    void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
+    void operator()(cairo_t* context) const { cairo_destroy(context); }
+  };
+
+  void SetColor(Rgb color, float opacity);
+  // Adds what may be seen of the line to the current path.
+  void AddLine(const Eigen::Vector2d& from, const Eigen::Vector2d& to, double width_px);
+  void StrokePath(double width_px, Rgb color, float opacity);
 
   int width_, height_;
-  std::vector<Rgb> pixels_;
+  std::unique_ptr<cairo_surface_t, Destroy> surface_;
+  std::unique_ptr<cairo_t, Destroy> context_;
 };
-
-// Every pixel becomes a square of `factor` pixels.
-Canvas Magnified(const Canvas& canvas, int factor);
-
-// Every square of `factor` pixels becomes their mean; squares at the edges may be incomplete.
-Canvas Reduced(const Canvas& canvas, int factor);
-
-// 8 bits per channel. Goes through a temporary name, so that no half-written file is ever seen.
-absl::Status WritePng(const Canvas& canvas, const std::string& path);
 
 }  // namespace lightfit

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "absl/types/span.h"
-#include "picture/canvas.h"
+#include "picture/color.h"
 
 namespace lightfit {
 

@@ -153,7 +153,7 @@ class Page {
     for (const ComparedMap* map : maps) {
       if (!HasImage(*map)) continue;
       const Rgb color = map == &light_.lightfit() ? kGainColor : kReceiverColor;
-      bars.push_back({map->name, static_cast<double>(CountOf(*map, options_.bias)), color});
+      bars.push_back({map->name, CountOf(*map, options_.bias), color});
     }
     if (bars.empty()) return;
     Header("all methods", "wrong pixels; fewer is better", kTextColor);
@@ -197,18 +197,17 @@ class Page {
   }
 
   void DrawShadows(const std::vector<Lighting>& shadows) {
-    const Canvas full = ShadeShadows(stage_.screen, light_.light, light_.truth, shadows);
-    const Canvas panel =
-        layout_.magnified > 1
-            ? Magnified(full, layout_.magnified)
-            : ReducedPanel(full, WrongMask(light_.truth, shadows), layout_.reduced);
+    const Image full = ShadeShadows(stage_.screen, light_.light, light_.truth, shadows);
+    const Image panel = layout_.magnified > 1
+                            ? Magnified(full, layout_.magnified)
+                            : ReducedPanel(full, WrongMask(light_.truth, shadows), layout_.reduced);
     canvas_.DrawImage(X(), PanelY(), panel);
     const auto scaled = [this](int pixels) { return pixels * layout_.magnified / layout_.reduced; };
     Frame(X() + scaled(layout_.crop.x) - kFrameWidth,
           PanelY() + scaled(layout_.crop.y) - kFrameWidth,
           scaled(layout_.crop.width) + 2 * kFrameWidth,
           scaled(layout_.crop.height) + 2 * kFrameWidth);
-    const Canvas crop = EnlargedCrop(full, layout_.crop, layout_.crop_factor);
+    const Image crop = EnlargedCrop(full, layout_.crop, layout_.crop_factor);
     const int crop_y = PanelY() + layout_.panel_height + kCropGap;
     canvas_.DrawImage(X(), crop_y, crop);
     Frame(X(), crop_y, crop.width(), crop.height());

@@ -211,9 +211,9 @@ class Page {
                   map_title,
                   absl::StrFormat("the shadows' hull fills %.0f %% of the map",
                                   100 * panels.view.hull_share));
-      canvas_.DrawImage(layout_.MapX(column),
-                        panels_y,
-                        DrawMapPanel(panels.view, map, layout_.map_panel, typeface_));
+      canvas_.DrawCanvas(layout_.MapX(column),
+                         panels_y,
+                         DrawMapPanel(panels.view, map, layout_.map_panel, typeface_));
     };
     if (row.before.has_value()) {
       draw(0, "Before: focused map", "Map before", light.focused->figures, *row.before);

@@ -67,14 +67,14 @@ PanelSize HeatPanelSize(const Readback& readback) {
   return {size(readback.width()), size(readback.height())};
 }
 
-Canvas DrawHeatPanel(const Readback& readback,
-                     const Light& light,
-                     absl::Span<const float> footprints,
-                     absl::Span<const uint8_t> samples,
-                     const LogScale& scale) {
+Image DrawHeatPanel(const Readback& readback,
+                    const Light& light,
+                    absl::Span<const float> footprints,
+                    absl::Span<const uint8_t> samples,
+                    const LogScale& scale) {
   const int width = readback.width();
   const AffineDepth depth(readback.camera, readback.depth_kind);
-  Canvas image(width, readback.height(), kPanelColor);
+  Image image(width, readback.height(), kPanelColor);
   for (size_t pixel = 0; pixel < footprints.size(); ++pixel) {
     if (!depth.IsSurface(readback.depth[pixel])) continue;
     Rgb color =
@@ -87,7 +87,7 @@ Canvas DrawHeatPanel(const Readback& readback,
   if (zoom.magnified == 1) {
     // No room between the pixels: the sample pixels themselves are marked, after the reduction, so
     // that a line one pixel wide does not fade.
-    Canvas panel = zoom.reduced > 1 ? Reduced(image, zoom.reduced) : image;
+    Image panel = zoom.reduced > 1 ? Reduced(image, zoom.reduced) : image;
     for (size_t pixel = 0; pixel < samples.size(); ++pixel) {
       if (!samples[pixel]) continue;
       const int x = static_cast<int>(pixel % width) / zoom.reduced;
@@ -96,17 +96,17 @@ Canvas DrawHeatPanel(const Readback& readback,
     }
     return panel;
   }
-  Canvas panel = Magnified(image, zoom.magnified);
+  Image panel = Magnified(image, zoom.magnified);
   ForEachUsedEdge(readback, light, samples, [&](size_t pixel, size_t, bool is_right) {
     const int x = static_cast<int>(pixel % width) * zoom.magnified;
     const int y = static_cast<int>(pixel / width) * zoom.magnified;
     const int last = zoom.magnified - 1;
-    panel.FillRectangle(x + (is_right ? last : 0),
-                        y + (is_right ? 0 : last),
-                        is_right ? 1 : zoom.magnified,
-                        is_right ? zoom.magnified : 1,
-                        kBoundaryColor,
-                        kBoundaryOpacity);
+    for (int along = 0; along <= last; ++along) {
+      panel.Blend(x + (is_right ? last : along),
+                  y + (is_right ? along : last),
+                  kBoundaryColor,
+                  kBoundaryOpacity);
+    }
   });
   return panel;
 }

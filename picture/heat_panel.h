@@ -10,6 +10,7 @@
 #include "optimizer/readback/readback.h"
 #include "picture/canvas.h"
 #include "picture/color_map.h"
+#include "picture/image.h"
 #include "picture/text.h"
 
 namespace lightfit {
@@ -24,11 +25,11 @@ PanelSize HeatPanelSize(const Readback& readback);
 
 // `footprints` as FootprintImage() and `samples` as SampleImage() give them. Pixels in the light's
 // shadow are darker; a white line runs along the shadow edges that were used.
-Canvas DrawHeatPanel(const Readback& readback,
-                     const Light& light,
-                     absl::Span<const float> footprints,
-                     absl::Span<const uint8_t> samples,
-                     const LogScale& scale);
+Image DrawHeatPanel(const Readback& readback,
+                    const Light& light,
+                    absl::Span<const float> footprints,
+                    absl::Span<const uint8_t> samples,
+                    const LogScale& scale);
 
 // The colours of the scale from bottom to top, with ticks and numbers at the right.
 void DrawColorBar(

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "absl/strings/str_format.h"
 #include "picture/theme.h"
@@ -97,10 +98,10 @@ class Plot {
 
   void DrawLines() {
     for (const ChartLine& line : chart_.lines) {
-      absl::optional<Eigen::Vector2d> before;
+      std::optional<Eigen::Vector2d> before;
       bool is_joined = false;
       for (size_t i = 0; i < chart_.x.size() && i < line.values.size(); ++i) {
-        absl::optional<Eigen::Vector2d> point;
+        std::optional<Eigen::Vector2d> point;
         if (HasPlace(line.values[i])) point.emplace(X(chart_.x[i]), Y(*line.values[i]));
         if (point && before) canvas_.DrawLine(*before, *point, LineWidth(), line.color);
         // A value between two gaps would not be seen.

@@ -14,6 +14,7 @@ namespace {
 
 constexpr int kBorder = 26;             // pixels around the map, for its size
 constexpr double kDensityRadius = 1.1;  // pixels
+constexpr double kSampleRadius = 1.3;   // pixels
 constexpr double kReceiverOpacity = 0.05;
 constexpr double kMinReceiverOpacity = 0.004;
 constexpr size_t kDenseReceivers = 300000;
@@ -35,6 +36,27 @@ Frame FrameFor(MapSize map, int size) {
   frame.left = (size - frame.scale * map.width) / 2;
   frame.top = kBorder;
   return frame;
+}
+
+// Whether a small dot there can be seen. A receiver may land anywhere, also where no int reaches.
+bool IsInPanel(const Eigen::Vector2d& pixel, int size) {
+  return pixel.minCoeff() > -kBorder && pixel.maxCoeff() < size + kBorder;
+}
+
+// Point clouds are drawn in floats, not by Cairo: a single receiver's share of a pixel is often
+// less than one step of 8 bits. Antialiased by the distance to the dot's edge.
+void BlendDot(
+    const Eigen::Vector2d& center, double radius, Rgb color, float opacity, Image* image) {
+  const double reach = radius + 1;
+  const int x_end = static_cast<int>(std::ceil(center.x() + reach));
+  const int y_end = static_cast<int>(std::ceil(center.y() + reach));
+  for (int y = static_cast<int>(std::floor(center.y() - reach)); y < y_end; ++y) {
+    for (int x = static_cast<int>(std::floor(center.x() - reach)); x < x_end; ++x) {
+      const double distance = (Eigen::Vector2d(x + 0.5, y + 0.5) - center).norm();
+      const double coverage = std::clamp(radius - distance + 0.5, 0.0, 1.0);
+      image->Blend(x, y, color, opacity * static_cast<float>(coverage));
+    }
+  }
 }
 
 // Faint lines at equal numbers of texels, so that the eye can compare places.
@@ -84,20 +106,25 @@ Canvas DrawMapPanel(const MapView& view, MapSize map, int size, const Typeface& 
   const double num_receivers = static_cast<double>(std::max<size_t>(view.receivers.size(), 1));
   const float opacity = static_cast<float>(
       std::clamp(kReceiverOpacity * size * size / num_receivers, kMinReceiverOpacity, 0.35));
+  Image image = canvas.ToImage();
   const bool is_dense = view.receivers.size() > kDenseReceivers;
   for (const Eigen::Vector2d& receiver : view.receivers) {
     const Eigen::Vector2d pixel = frame.PixelOf(receiver);
+    if (!IsInPanel(pixel, size)) continue;
     if (is_dense) {
-      canvas.Blend(
+      image.Blend(
           static_cast<int>(pixel.x()), static_cast<int>(pixel.y()), kReceiverColor, 4 * opacity);
     } else {
-      canvas.DrawDot(pixel, kDensityRadius, kReceiverColor, opacity);
+      BlendDot(pixel, kDensityRadius, kReceiverColor, opacity, &image);
     }
   }
   const float sample_opacity = view.samples.size() > 20000 ? kSampleOpacity / 2 : kSampleOpacity;
   for (const Eigen::Vector2d& sample : view.samples) {
-    canvas.DrawDot(frame.PixelOf(sample), 1.3, kSampleColor, sample_opacity);
+    const Eigen::Vector2d pixel = frame.PixelOf(sample);
+    if (!IsInPanel(pixel, size)) continue;
+    BlendDot(pixel, kSampleRadius, kSampleColor, sample_opacity, &image);
   }
+  canvas.DrawImage(0, 0, image);
 
   Polygon hull;
   for (const Eigen::Vector2d& corner : view.hull) hull.push_back(frame.PixelOf(corner));

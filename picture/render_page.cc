@@ -14,14 +14,14 @@ const Rgb kDeepShadeColor = HexColor(0x23262f);
 
 }  // namespace
 
-Canvas DrawLighting(const SurfaceImage& image,
-                    absl::Span<const Lighting> lighting,
-                    const Light& light) {
+Image DrawLighting(const SurfaceImage& image,
+                   absl::Span<const Lighting> lighting,
+                   const Light& light) {
   const Camera& camera = image.camera;
   const Eigen::Matrix3d world_from_camera =
       camera.camera_from_world.topLeftCorner<3, 3>().transpose();
   const Eigen::Vector3d eye = -world_from_camera * camera.camera_from_world.topRightCorner<3, 1>();
-  Canvas canvas(camera.width, camera.height, kPageColor);
+  Image picture(camera.width, camera.height, kPageColor);
   for (size_t i = 0; i < image.pixels.size(); ++i) {
     const SurfacePoint& pixel = image.pixels[i];
     if (!pixel.is_surface()) continue;
@@ -33,10 +33,10 @@ Canvas DrawLighting(const SurfaceImage& image,
     const bool is_lit = lighting[i] == Lighting::kLit;
     const double cosine = pixel.normal.dot((is_lit ? to_light : to_eye).stableNormalized());
     const auto share = static_cast<float>(std::clamp(cosine, 0.0, 1.0));
-    canvas.pixels()[i] =
+    picture.pixels()[i] =
         is_lit ? Mix(kGrazedColor, kLitColor, share) : Mix(kDeepShadeColor, kShadeColor, share);
   }
-  return canvas;
+  return picture;
 }
 
 }  // namespace lightfit

@@ -2,12 +2,12 @@
 //
 // What the camera sees under one light, with its exact shadows: a plain grey rendering.
 // In:   surfaces and their true lighting.
-// Out:  a Canvas of the image's size.
+// Out:  a Image of the image's size.
 #pragma once
 
 #include "absl/types/span.h"
 #include "geometry/light.h"
-#include "picture/canvas.h"
+#include "picture/image.h"
 #include "render/surface_image.h"
 #include "render/true_lighting.h"
 
@@ -15,8 +15,8 @@ namespace lightfit {
 
 // Lit surfaces by the cosine between normal and light; the rest dark, with a little of the cosine
 // towards the eye, so that shapes can be told in shadow.
-Canvas DrawLighting(const SurfaceImage& image,
-                    absl::Span<const Lighting> lighting,
-                    const Light& light);
+Image DrawLighting(const SurfaceImage& image,
+                   absl::Span<const Lighting> lighting,
+                   const Light& light);
 
 }  // namespace lightfit

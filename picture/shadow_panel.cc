@@ -36,11 +36,11 @@ Rgb Grey(const SurfacePoint& pixel, const Eigen::Vector3d& eye, const Light& lig
 
 }  // namespace
 
-Canvas ShadeShadows(const SurfaceImage& image,
-                    const Light& light,
-                    absl::Span<const Lighting> truth,
-                    absl::Span<const Lighting> shadows) {
-  Canvas canvas(image.camera.width, image.camera.height, kPanelColor);
+Image ShadeShadows(const SurfaceImage& image,
+                   const Light& light,
+                   absl::Span<const Lighting> truth,
+                   absl::Span<const Lighting> shadows) {
+  Image shaded(image.camera.width, image.camera.height, kPanelColor);
   const Eigen::Matrix4d world_from_camera = image.camera.camera_from_world.inverse();
   const Eigen::Vector3d eye = world_from_camera.block<3, 1>(0, 3);
   for (size_t i = 0; i < image.pixels.size(); ++i) {
@@ -48,18 +48,18 @@ Canvas ShadeShadows(const SurfaceImage& image,
     if (!pixel.is_surface()) continue;
     if (IsJudged(truth[i]) && shadows[i] != truth[i]) {
       const Rgb mark = shadows[i] == Lighting::kShadowed ? kFalseShadowColor : kLightLeakColor;
-      canvas.pixels()[i] = Mix(Grey(pixel, eye, light, true), mark, kMarkOpacity);
+      shaded.pixels()[i] = Mix(Grey(pixel, eye, light, true), mark, kMarkOpacity);
     } else {
-      canvas.pixels()[i] = Grey(pixel, eye, light, shadows[i] == Lighting::kLit);
+      shaded.pixels()[i] = Grey(pixel, eye, light, shadows[i] == Lighting::kLit);
     }
   }
-  return canvas;
+  return shaded;
 }
 
-Canvas ReducedPanel(const Canvas& full, absl::Span<const uint8_t> wrong, int factor) {
+Image ReducedPanel(const Image& full, absl::Span<const uint8_t> wrong, int factor) {
   if (factor == 1) return full;
   // The unmarked pixels and the marked ones are averaged apart, then put over each other.
-  Canvas panel = Reduced(full, factor);
+  Image panel = Reduced(full, factor);
   for (int y = 0; y < panel.height(); ++y) {
     for (int x = 0; x < panel.width(); ++x) {
       Rgb marked, unmarked;
@@ -82,8 +82,8 @@ Canvas ReducedPanel(const Canvas& full, absl::Span<const uint8_t> wrong, int fac
   return panel;
 }
 
-Canvas EnlargedCrop(const Canvas& full, const CropBox& crop, int factor) {
-  Canvas cut(crop.width, crop.height, kPanelColor);
+Image EnlargedCrop(const Image& full, const CropBox& crop, int factor) {
+  Image cut(crop.width, crop.height, kPanelColor);
   for (int y = 0; y < crop.height; ++y) {
     for (int x = 0; x < crop.width; ++x) cut.Blend(x, y, full.At(crop.x + x, crop.y + y));
   }

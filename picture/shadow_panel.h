@@ -2,7 +2,7 @@
 //
 // A shadow image as one panel of a picture, wrong pixels marked, and a crop of it enlarged.
 // In:   what the camera sees, the truth, the shadows that some map gives.
-// Out:  canvases; and the crop that shows best where two sets of shadows differ.
+// Out:  images; and the crop that shows best where two sets of shadows differ.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 #include "absl/types/span.h"
 #include "geometry/light.h"
-#include "picture/canvas.h"
+#include "picture/image.h"
 #include "render/surface_image.h"
 #include "render/true_lighting.h"
 
@@ -24,17 +24,17 @@ struct CropBox {
 
 // Grey by the cosine between surface and light; darker in shadow. Where `shadows` and `truth`
 // differ the pixel is kFalseShadowColor (dark, should be lit) or kLightLeakColor.
-Canvas ShadeShadows(const SurfaceImage& image,
-                    const Light& light,
-                    absl::Span<const Lighting> truth,
-                    absl::Span<const Lighting> shadows);
+Image ShadeShadows(const SurfaceImage& image,
+                   const Light& light,
+                   absl::Span<const Lighting> truth,
+                   absl::Span<const Lighting> shadows);
 
 // `full` scaled down by a whole number; wrong pixels stay visible however thin they are. `wrong` is
 // row-major, not 0 at wrong pixels.
-Canvas ReducedPanel(const Canvas& full, absl::Span<const uint8_t> wrong, int factor);
+Image ReducedPanel(const Image& full, absl::Span<const uint8_t> wrong, int factor);
 
 // The crop, every pixel a square of `factor` pixels.
-Canvas EnlargedCrop(const Canvas& full, const CropBox& crop, int factor);
+Image EnlargedCrop(const Image& full, const CropBox& crop, int factor);
 
 // 1 where the shadows differ from the truth, else 0.
 std::vector<uint8_t> WrongMask(absl::Span<const Lighting> truth,

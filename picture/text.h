@@ -1,8 +1,16 @@
 // picture/text.h
 //
 // Text on a Canvas, in the DejaVu or Liberation typeface of the system.
+// In:   words of any origin, such as names of lights: UTF-8, or bytes that are made so.
+// Out:  drawn text and its width. A character that the typeface lacks becomes a box.
+//
+// The typeface is opened by its file: neither fontconfig's settings nor its cache play a part, so
+// that a picture is the same for every user of a machine, and on a bare one.
 #pragma once
 
+#include <cairo.h>
+
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -24,13 +32,13 @@ struct TextStyle {
 class Typeface {
  public:
   // Looks at the file that the environment variable LIGHTFIT_FONT names, then where the
-  // distributions put DejaVu Sans and Liberation Sans.
+  // distributions put DejaVu Sans and Liberation Sans. A file that is no font is passed over.
   static Typeface Find();
 
-  bool found() const { return !regular_.empty(); }
+  bool found() const { return regular_ != nullptr; }
 
-  // Draws the text; `baseline` is the y of the line that letters stand on. OpenImageIO 2.4 garbles
-  // what is not ASCII, so each such character becomes a question mark.
+  // Draws the text; `baseline` is the y of the line that letters stand on. What is not UTF-8 and
+  // what is no character, such as a line break, becomes a question mark.
   void Draw(
       int x, int baseline, absl::string_view text, const TextStyle& style, Canvas* canvas) const;
 
@@ -43,9 +51,16 @@ class Typeface {
                                    const TextStyle& style) const;
 
  private:
-  const std::string& File(const TextStyle& style) const { return style.bold ? bold_ : regular_; }
+  // Shared by copies, as Cairo counts references too.
+  using Face = std::shared_ptr<cairo_font_face_t>;
 
-  std::string regular_, bold_;
+  // Nothing where the file is no font.
+  static Face FaceFrom(const std::string& path);
+
+  // The face at the style's size.
+  std::shared_ptr<cairo_scaled_font_t> Scaled(const TextStyle& style) const;
+
+  Face regular_, bold_;
 };
 
 }  // namespace lightfit

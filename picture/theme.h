@@ -3,7 +3,7 @@
 // The colours of every picture that the command line draws: light on dark.
 #pragma once
 
-#include "picture/canvas.h"
+#include "picture/color.h"
 
 namespace lightfit {
 

@@ -206,11 +206,11 @@ TEST(BestCrop, IsTheLargestSumOfAll) {
 }
 
 TEST(ReducedPanel, KeepsASingleWrongPixelVisible) {
-  Canvas full(40, 40, {0.5f, 0.5f, 0.5f});
+  Image full(40, 40, {0.5f, 0.5f, 0.5f});
   std::vector<uint8_t> wrong(40 * 40, 0);
   full.Blend(21, 9, kFalseShadowColor);
   wrong[9 * 40 + 21] = 1;
-  const Canvas panel = ReducedPanel(full, wrong, 4);
+  const Image panel = ReducedPanel(full, wrong, 4);
   ASSERT_EQ(panel.width(), 10);
   // Sixteen pixels share the square, yet it is more mark than grey.
   EXPECT_GT(panel.At(5, 2).r - panel.At(5, 2).b, 0.4f);
@@ -218,9 +218,9 @@ TEST(ReducedPanel, KeepsASingleWrongPixelVisible) {
 }
 
 TEST(EnlargedCrop, RepeatsPixels) {
-  Canvas full(8, 8, {});
+  Image full(8, 8, {});
   full.Blend(3, 2, {1, 1, 1});
-  const Canvas crop = EnlargedCrop(full, {2, 1, 4, 3}, 5);
+  const Image crop = EnlargedCrop(full, {2, 1, 4, 3}, 5);
   EXPECT_EQ(crop.width(), 20);
   EXPECT_EQ(crop.height(), 15);
   EXPECT_EQ(crop.At(5, 5).r, 1);
@@ -238,7 +238,8 @@ TEST(BarChart, IsAsLongAsTheNumbers) {
                Typeface(),
                &canvas);
   float red = 0, green = 0, blue = 0;
-  for (const Rgb& pixel : canvas.pixels()) {
+  const Image drawn = canvas.ToImage();
+  for (const Rgb& pixel : drawn.pixels()) {
     red += pixel.r;
     green += pixel.g;
     blue += pixel.b;

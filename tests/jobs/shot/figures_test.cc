@@ -81,7 +81,7 @@ TEST_F(ThreeFrames, CsvLeavesOutWhatIsNotThere) {
 }
 
 TEST_F(ThreeFrames, PlotHasTheColoursOfItsModes) {
-  const Canvas plot = DrawShotPlot(job_, rows_, Typeface());
+  const Image plot = DrawShotPlot(job_, rows_, Typeface()).ToImage();
   const auto count = [&plot](Rgb color) {
     int num_pixels = 0;
     for (const Rgb& pixel : plot.pixels()) {
