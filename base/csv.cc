@@ -20,7 +20,7 @@ std::string CsvNumber(double value) {
   return std::string(digits, end.ptr);
 }
 
-std::string CsvNumber(const absl::optional<double>& value) {
+std::string CsvNumber(const std::optional<double>& value) {
   return value.has_value() ? CsvNumber(*value) : "";
 }
 

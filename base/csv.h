@@ -3,9 +3,8 @@
 // Fields of comma-separated values, as RFC 4180 has them.
 #pragma once
 
+#include <optional>
 #include <string>
-
-#include "absl/types/optional.h"
 
 namespace lightfit {
 
@@ -14,6 +13,6 @@ std::string CsvField(const std::string& text);
 
 // The shortest digits that read back as the same number; nothing for none.
 std::string CsvNumber(double value);
-std::string CsvNumber(const absl::optional<double>& value);
+std::string CsvNumber(const std::optional<double>& value);
 
 }  // namespace lightfit

@@ -116,11 +116,11 @@ void RegisterStages(const FitInput& input) {
     benchmark::DoNotOptimize(Summarize(input.input.View(), light, QualityObjective()));
   });
   Register("BM_FindReceivers/" + input.name, pixels, [&input, mask, published_samples] {
-    benchmark::DoNotOptimize(FindReceivers(input.input.View(), mask, published_samples));
+    benchmark::DoNotOptimize(FindSurfaces(input.input.View(), mask, published_samples));
   });
 
-  const auto receivers = std::make_shared<const Receivers>(
-      *FindReceivers(input.input.View(), mask, published_samples));
+  const auto receivers = std::make_shared<const Surfaces>(
+      *FindSurfaces(input.input.View(), mask, published_samples));
   const auto cover =
       std::make_shared<const RayCover>(*CoverReceivers(*receivers, light, Cover::kReceivers));
   const auto samples = std::make_shared<const Samples>(

@@ -13,8 +13,8 @@ namespace lightfit {
 absl::StatusOr<MatrixCheck> MatrixCheck::Create(const Readback& readback,
                                                 const Light& light,
                                                 const SampleOptions& options) {
-  absl::StatusOr<Receivers> receivers =
-      FindReceivers(readback, uint32_t{1} << light.shadow_bit, options);
+  absl::StatusOr<Surfaces> receivers =
+      FindSurfaces(readback, uint32_t{1} << light.shadow_bit, options);
   if (!receivers.ok()) return receivers.status();
   MatrixCheck check;
   // The right inverse of ray_from_world, whose first three columns have orthonormal rows or, for a

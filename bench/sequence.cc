@@ -80,7 +80,7 @@ absl::StatusOr<ShotJob> JobOf(const std::string& shot_folder, const std::string&
 }
 
 std::vector<std::string> Cells(const std::string& name, const ShotTotals& totals) {
-  const auto text = [](const absl::optional<double>& value) {
+  const auto text = [](const std::optional<double>& value) {
     return value.has_value() ? FigureText(*value) : std::string("-");
   };
   return {name,
@@ -119,8 +119,8 @@ absl::Status Run(const std::string& shot_folder) {
     ShotContext context(*job);
     if (absl::Status status = RunShot(&context); !status.ok()) return status;
     for (size_t i = 0; i < tables.size(); ++i) {
-      const absl::optional<size_t> light =
-          i < job->lights.size() ? absl::optional<size_t>(i) : absl::nullopt;
+      const std::optional<size_t> light =
+          i < job->lights.size() ? std::optional<size_t>(i) : std::nullopt;
       tables[i].AddRow(Cells(row.name, TotalsOf(context.rows, row.mode, light)));
     }
   }

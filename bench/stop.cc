@@ -28,7 +28,7 @@
 #include "base/stop.h"
 #include "base/table.h"
 #include "bench/inputs.h"
-#include "optimizer/figures/evaluate.h"
+#include "optimizer/evaluate.h"
 #include "optimizer/fit.h"
 #include "optimizer/sizing/allocation.h"
 #include "optimizer/sizing/map_shapes.h"

@@ -16,7 +16,8 @@
 #include "calls/request_fields.h"
 #include "calls/request_lights.h"
 #include "calls/request_options.h"
-#include "optimizer/figures/evaluate.h"
+#include "optimizer/evaluate.h"
+#include "optimizer/fit.h"
 #include "wire/camera_proto.h"
 #include "wire/matrix_proto.h"
 #include "wire/options_proto.h"
@@ -61,7 +62,7 @@ absl::StatusOr<Eigen::Matrix4d> MapFromWorldOf(const v1::CandidateMatrix& candid
 
 absl::StatusOr<v1::Evaluation> Evaluate(const v1::CandidateMatrix& candidate,
                                         const std::vector<RequestLight>& lights,
-                                        const Readback& readback,
+                                        const absl::StatusOr<Surfaces>& surfaces,
                                         const FitOptions& options) {
   const absl::StatusOr<Light> light = LightNamed(candidate.light(), lights);
   if (!light.ok()) return light.status();
@@ -69,16 +70,18 @@ absl::StatusOr<v1::Evaluation> Evaluate(const v1::CandidateMatrix& candidate,
   if (!map.ok()) return map.status();
   const absl::StatusOr<Eigen::Matrix4d> map_from_world = MapFromWorldOf(candidate, *map);
   if (!map_from_world.ok()) return map_from_world.status();
-  const absl::StatusOr<MatrixFigures> figures =
-      EvaluateMatrix(readback, *light, *map_from_world, *map, options);
+  if (!surfaces.ok()) return surfaces.status();
+  const absl::StatusOr<LightView> view = ViewLight(*surfaces, *light, options);
+  if (!view.ok()) return view.status();
+  const absl::StatusOr<Figures> figures = EvaluateMatrix(*view, *map_from_world, *map, options);
   if (!figures.ok()) return figures.status();
   v1::Evaluation evaluation;
   evaluation.set_energy(figures->energy);
   *evaluation.mutable_footprint() =
       FootprintToProto(figures->footprint, options.compute_statistics);
   *evaluation.mutable_samples() = SampleCountsToProto(figures->samples);
-  evaluation.set_num_behind(figures->num_behind);
-  evaluation.set_wrong_share(figures->wrong_share);
+  evaluation.set_num_behind(figures->footprint.num_behind);
+  evaluation.set_wrong_share(*figures->wrong_share);
   if (absl::Status status = CheckFinite(evaluation, "evaluation"); !status.ok()) {
     return absl::InvalidArgumentError(absl::StrCat(
         "its figures are beyond numbers (", status.message(), "): is the matrix of this scene?"));
@@ -109,11 +112,18 @@ absl::StatusOr<v1::EvaluateResult> AnswerEvaluate(const v1::EvaluateRequest& req
       ReadbackView::Of(request.readback(), request.lights_size(), context.limits);
   if (!readback.ok()) return readback.status();
 
+  std::vector<Light> usable;
+  for (const RequestLight& light : *lights) {
+    if (light.status.ok()) usable.push_back(light.light);
+  }
+  const absl::StatusOr<Surfaces> surfaces =
+      FindSurfaces(readback->view(), LightMask(usable), options->samples);
+
   v1::EvaluateResult result;
   for (int i = 0; i < request.matrices_size(); ++i) {
     const v1::CandidateMatrix& candidate = request.matrices(i);
     absl::StatusOr<v1::Evaluation> evaluation =
-        Evaluate(candidate, *lights, readback->view(), *options);
+        Evaluate(candidate, *lights, surfaces, *options);
     if (StopRequested()) return StoppedError();
     v1::Evaluation& entry = *result.add_evaluations();
     if (evaluation.ok()) entry = *evaluation;

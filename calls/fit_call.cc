@@ -9,7 +9,7 @@
 #include "calls/request_fields.h"
 #include "calls/request_lights.h"
 #include "calls/request_options.h"
-#include "optimizer/figures/evaluate.h"
+#include "optimizer/figures/foretell.h"
 #include "optimizer/fit.h"
 #include "wire/result_json.h"
 
@@ -20,7 +20,8 @@ namespace {
 std::vector<LightFit> FitRequestLights(const std::vector<RequestLight>& lights,
                                        const Readback& readback,
                                        MapSize map,
-                                       const FitOptions& options) {
+                                       const FitOptions& options,
+                                       bool foretells) {
   std::vector<Light> usable;
   for (const RequestLight& light : lights) {
     if (light.status.ok()) usable.push_back(light.light);
@@ -32,15 +33,12 @@ std::vector<LightFit> FitRequestLights(const std::vector<RequestLight>& lights,
     LightFit& fit = fits.emplace_back();
     fit.light = light.light;
     fit.matrix = light.status.ok() ? std::move(matrices[next++]) : light.status;
+    if (!foretells || !fit.matrix.ok()) continue;
+    const absl::StatusOr<double> wrong_share = ForetellWrongShare(
+        readback, light.light, fit.matrix->map_from_world, map, options.samples);
+    if (wrong_share.ok()) fit.wrong_share = *wrong_share;
   }
   return fits;
-}
-
-void Foretell(const Readback& readback, const FitOptions& options, LightFit* fit) {
-  if (!fit->matrix.ok()) return;
-  const absl::StatusOr<MatrixFigures> figures =
-      EvaluateMatrix(readback, fit->light, fit->matrix->map_from_world, fit->matrix->map, options);
-  if (figures.ok()) fit->wrong_share = figures->wrong_share;
 }
 
 }  // namespace
@@ -73,10 +71,8 @@ absl::StatusOr<v1::FitResult> AnswerFit(const v1::FitRequest& request,
   report.options = *options;
   report.map = *map;
   report.clip = *clip;
-  report.lights = FitRequestLights(*lights, readback, *map, *options);
-  if (request.foretell_wrong()) {
-    for (LightFit& fit : report.lights) Foretell(readback, *options, &fit);
-  }
+  report.lights =
+      FitRequestLights(*lights, readback, *map, *options, request.foretell_wrong());
   if (StopRequested()) return StoppedError();
   return FinishedResult(report, *lights);
 }

@@ -3,9 +3,9 @@
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/text_format.h>
 
-#include "base/stop.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "base/stop.h"
 #include "base/text_file.h"
 #include "calls/request_fields.h"
 #include "calls/request_options.h"
@@ -21,7 +21,7 @@ using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 
 // Adds the next summary of the request to `sum`, which is empty at first.
-absl::Status AddTo(absl::optional<SummarySet>* sum,
+absl::Status AddTo(std::optional<SummarySet>* sum,
                    const std::string& field,
                    absl::StatusOr<SummarySet> set,
                    const CallContext& context) {
@@ -93,7 +93,7 @@ absl::StatusOr<SummarySet> SummariesOfRequest(
                         count,
                         context.limits.max_summaries));
   }
-  absl::optional<SummarySet> sum;
+  std::optional<SummarySet> sum;
   for (int i = 0; i < summaries.size(); ++i) {
     absl::Status status =
         AddTo(&sum, absl::StrCat("summaries[", i, "]"), SummarySetFromProto(summaries[i]), context);

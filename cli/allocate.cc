@@ -41,7 +41,7 @@ absl::StatusOr<AllocationReport> Allocate(const AllocateFlags& flags, const Allo
 }
 
 std::string SourceLine(const AllocateFlags& flags, const AllocateInputs& inputs) {
-  if (const absl::optional<SummarySet>& summaries = inputs.task.summaries) {
+  if (const std::optional<SummarySet>& summaries = inputs.task.summaries) {
     const int64_t num_frames = summaries->lights.front().num_frames();
     return absl::StrFormat("%s: %d %s",
                            TitleText(flags.fit.summary_paths),
@@ -62,7 +62,7 @@ int PrintFailedLights(const AllocationReport& report) {
   for (size_t i = 0; i < report.entries.size(); ++i) {
     const LightFit& fit = report.fit.lights[i];
     const std::string name = absl::StrCat("light \"", fit.light.name, "\"");
-    const absl::optional<ReachedTolerance>& reached = report.entries[i].reached;
+    const std::optional<ReachedTolerance>& reached = report.entries[i].reached;
     if (!fit.matrix.ok()) {
       std::string message(fit.matrix.status().message());
       if (!absl::StrContains(message, name)) message = absl::StrCat(name, ": ", message);
@@ -126,7 +126,7 @@ int RunAllocate(const AllocateFlags& flags) {
     std::fflush(stdout);
   }
   const int num_failed = PrintFailedLights(*report);
-  const absl::optional<SummarySet>& summaries = inputs->task.summaries;
+  const std::optional<SummarySet>& summaries = inputs->task.summaries;
   if (summaries.has_value()) PrintMissingFrames(*report, *summaries);
   if (!flags.fit.json_path.empty()) {
     status =

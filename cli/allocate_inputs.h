@@ -5,8 +5,9 @@
 // Out:  AllocateInputs.
 #pragma once
 
+#include <optional>
+
 #include "absl/status/statusor.h"
-#include "absl/types/optional.h"
 #include "cli/flags/allocate_flags.h"
 #include "io/readback_exr.h"
 #include "jobs/allocate_lights.h"
@@ -14,7 +15,7 @@
 namespace lightfit {
 
 struct AllocateInputs {
-  absl::optional<ReadbackFile> readback;  // task.readback refers to it
+  std::optional<ReadbackFile> readback;  // task.readback refers to it
   AllocationTask task;
   double image_scale = 1.0;  // pixels of the final image per pixel of the read-back
 };

@@ -14,6 +14,7 @@
 #include "cli/flags/fit_inputs.h"
 #include "cli/reports/fit_report.h"
 #include "jobs/fit_comparison.h"
+#include "optimizer/fit.h"
 #include "picture/fit_page.h"
 #include "picture/png.h"
 #include "picture/text.h"
@@ -35,7 +36,7 @@ absl::Status CheckOutputs(const FitFlags& flags) {
 void WarnAboutPixels(const std::vector<Comparison>& comparisons) {
   for (const Comparison& comparison : comparisons) {
     if (!comparison.final.ok()) continue;
-    const int64_t num_invalid = comparison.final->matrix.samples.invalid_depth;
+    const int64_t num_invalid = comparison.final->matrix.figures.samples.invalid_depth;
     if (num_invalid > 0) {
       PrintWarning(absl::StrCat(num_invalid,
                                 num_invalid == 1 ? " pixel" : " pixels",
@@ -77,10 +78,10 @@ FitReport JsonReport(const FitFlags& flags,
       fit.matrix = comparison.final.status();
     } else {
       fit.matrix = comparison.final->matrix;
-      fit.wrong_share = comparison.final->figures.wrong_share;
+      fit.wrong_share = comparison.final->own_figures.wrong_share;
     }
-    if (comparison.focused.ok()) fit.focused = comparison.focused->figures;
-    if (comparison.published.ok()) fit.as_published = comparison.published->figures;
+    if (comparison.focused.ok()) fit.focused = comparison.focused->own_figures;
+    if (comparison.published.ok()) fit.as_published = comparison.published->own_figures;
     report.lights.push_back(std::move(fit));
   }
   return report;
@@ -99,7 +100,8 @@ struct Outcome {
 };
 
 Outcome FitAndDraw(const FitFlags& flags, const FitOptions& options, const FitInputs& inputs) {
-  const Readback readback = inputs.file.View();
+  const absl::StatusOr<Surfaces> surfaces =
+      FindSurfaces(inputs.file.View(), LightMask(inputs.lights), options.samples);
   const bool draws = !flags.picture_path.empty();
   Typeface typeface;
   if (draws) {
@@ -114,9 +116,10 @@ Outcome FitAndDraw(const FitFlags& flags, const FitOptions& options, const FitIn
   Progress progress(static_cast<int>(inputs.lights.size()) + (draws ? 1 : 0), flags.quiet);
   for (size_t i = 0; i < inputs.lights.size(); ++i) {
     const Light& light = inputs.lights[i];
-    const absl::Status& light_status = inputs.file.light_status[i];
+    absl::Status light_status = inputs.file.light_status[i];
+    if (light_status.ok()) light_status = surfaces.status();
     progress.Begin(absl::StrCat("fitting ", light.name));
-    outcome.comparisons.push_back(light_status.ok() ? Compare(readback, light, flags.map, options)
+    outcome.comparisons.push_back(light_status.ok() ? Compare(*surfaces, light, flags.map, options)
                                                     : FailedComparison(light, light_status));
     progress.Advance();
   }
@@ -124,7 +127,9 @@ Outcome FitAndDraw(const FitFlags& flags, const FitOptions& options, const FitIn
     progress.Begin("drawing");
     const PictureOptions picture = {
         TitleOf(flags.readback_path), options.samples, ShortMethodText(options)};
-    outcome.picture = DrawPicture(readback, outcome.comparisons, flags.map, picture, typeface);
+    outcome.picture =
+        surfaces.ok() ? DrawPicture(*surfaces, outcome.comparisons, flags.map, picture, typeface)
+                      : surfaces.status();
   }
   return outcome;
 }

@@ -62,11 +62,13 @@ std::string ReportText(const std::string& source,
     table.AddRow({fit.light->name(),
                   absl::StrCat(fit.light->total.num_frames),
                   absl::StrCat(fit.light->num_frames_without),
-                  absl::StrCat(matrix.samples.candidates),
-                  absl::StrCat(matrix.samples.used),
-                  FigureText(matrix.energy_start),
-                  FigureText(matrix.energy),
-                  matrix.energy_start > 0.0 ? FigureText(matrix.energy / matrix.energy_start) : "-",
+                  absl::StrCat(matrix.figures.samples.candidates),
+                  absl::StrCat(matrix.figures.samples.used),
+                  FigureText(matrix.search.energy_start),
+                  FigureText(matrix.figures.energy),
+                  matrix.search.energy_start > 0.0
+                      ? FigureText(matrix.figures.energy / matrix.search.energy_start)
+                      : "-",
                   FigureText(fit.time_ms)});
   }
   return absl::StrFormat(

@@ -64,7 +64,7 @@ absl::StatusOr<MatricesByLight> ReadMatrices(const std::string& path) {
 struct Job {
   const SummarizeFlags& flags;
   std::vector<Light> lights;  // of the read-backs
-  absl::optional<MatricesByLight> weigh_by;
+  std::optional<MatricesByLight> weigh_by;
 };
 
 absl::StatusOr<Job> JobOf(const SummarizeFlags& flags, const std::vector<bool>& is_summary) {
@@ -111,7 +111,7 @@ LightSummary SummarizeLight(const Job& job,
                             const std::string& frame) {
   const Light& light = job.lights[light_index];
   const FitOptions& options = job.flags.fit.options;
-  absl::optional<Eigen::Matrix4d> weighed_in;
+  std::optional<Eigen::Matrix4d> weighed_in;
   const auto summarize = [&]() -> absl::StatusOr<Summary> {
     if (job.weigh_by.has_value()) {
       const absl::StatusOr<Eigen::Matrix4d> map = WeighingMap(*job.weigh_by, light);
@@ -179,7 +179,7 @@ std::vector<absl::StatusOr<SummarySet>> SummarizeInputs(const Job& job,
 absl::StatusOr<SummarySet> SumOf(const std::vector<absl::StatusOr<SummarySet>>& sets,
                                  const std::vector<std::string>& inputs,
                                  int* num_failed) {
-  absl::optional<SummarySet> sum;
+  std::optional<SummarySet> sum;
   for (size_t i = 0; i < sets.size(); ++i) {
     if (!sets[i].ok()) {
       PrintError(absl::StrCat("left out: ", sets[i].status().message()));

@@ -11,12 +11,11 @@ namespace lightfit {
 
 namespace {
 
-absl::optional<Eigen::Matrix4d> MatrixOf(const internal::ExrInput& exr,
-                                         int part,
-                                         const std::string& name) {
-  const absl::optional<Eigen::Matrix4d> matrix = exr.MatrixAttribute(part, name);
-  const absl::optional<Eigen::Matrix4d> exact =
-      exr.MatrixAttribute(part, internal::ExactName(name));
+std::optional<Eigen::Matrix4d> MatrixOf(const internal::ExrInput& exr,
+                                        int part,
+                                        const std::string& name) {
+  const std::optional<Eigen::Matrix4d> matrix = exr.MatrixAttribute(part, name);
+  const std::optional<Eigen::Matrix4d> exact = exr.MatrixAttribute(part, internal::ExactName(name));
   if (matrix && exact && exact->cast<float>() == matrix->cast<float>()) return exact;
   return matrix;
 }
@@ -33,8 +32,8 @@ absl::StatusOr<Camera> internal::CameraFromExr(const ExrInput& exr,
   std::vector<int> parts = {part};
   for (int i = 0; i < exr.num_parts(); ++i) parts.push_back(i);
   for (const int i : parts) {
-    const absl::optional<Eigen::Matrix4d> world_to_camera = MatrixOf(exr, i, "worldToCamera");
-    const absl::optional<Eigen::Matrix4d> world_to_ndc = MatrixOf(exr, i, "worldToNDC");
+    const std::optional<Eigen::Matrix4d> world_to_camera = MatrixOf(exr, i, "worldToCamera");
+    const std::optional<Eigen::Matrix4d> world_to_ndc = MatrixOf(exr, i, "worldToNDC");
     if (!world_to_camera || !world_to_ndc) continue;
     CameraExrOptions file_options = options;
     if (options.pixel_aspect == 0.0) {

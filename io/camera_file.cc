@@ -79,7 +79,7 @@ absl::StatusOr<StatedCamera> CameraFromScene(const Struct& scene, int frame) {
   absl::StatusOr<Camera> camera = MakeCamera(
       InverseOfPose(*world_from_camera), *projection, ClipConvention::OpenGl(), *width, *height);
   if (!camera.ok()) return camera.status();
-  return StatedCamera{*std::move(camera), absl::nullopt};
+  return StatedCamera{*std::move(camera), std::nullopt};
 }
 
 }  // namespace

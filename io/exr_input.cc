@@ -108,26 +108,26 @@ bool ExrInput::is_uint(ChannelId id) const {
   return parts_[id.part].channelformat(id.channel) == OIIO::TypeDesc::UINT32;
 }
 
-absl::optional<ChannelId> ExrInput::Find(absl::string_view name, int preferred_part) const {
-  const auto find_in = [&](int part) -> absl::optional<ChannelId> {
+std::optional<ChannelId> ExrInput::Find(absl::string_view name, int preferred_part) const {
+  const auto find_in = [&](int part) -> std::optional<ChannelId> {
     const std::vector<std::string>& names = parts_[part].channelnames;
     const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end()) return absl::nullopt;
+    if (found == names.end()) return std::nullopt;
     return ChannelId{part, static_cast<int>(found - names.begin())};
   };
-  if (absl::optional<ChannelId> id = find_in(preferred_part)) return id;
+  if (std::optional<ChannelId> id = find_in(preferred_part)) return id;
   for (int part = 0; part < num_parts(); ++part) {
-    if (absl::optional<ChannelId> id = find_in(part)) return id;
+    if (std::optional<ChannelId> id = find_in(part)) return id;
   }
-  return absl::nullopt;
+  return std::nullopt;
 }
 
-absl::optional<Eigen::Matrix4d> ExrInput::MatrixAttribute(int part, const std::string& name) const {
+std::optional<Eigen::Matrix4d> ExrInput::MatrixAttribute(int part, const std::string& name) const {
   // Case-sensitive: OpenImageIO calls V-Ray's cameraTransform, a camera-to-world matrix,
   // "worldtocamera".
   const OIIO::ParamValue* attribute =
       parts_[part].find_attribute(name, OIIO::TypeDesc::UNKNOWN, /*casesensitive=*/true);
-  if (attribute == nullptr) return absl::nullopt;
+  if (attribute == nullptr) return std::nullopt;
   const float* single = static_cast<const float*>(attribute->data());
   const double* wide = static_cast<const double*>(attribute->data());
   Eigen::Matrix4d matrix;
@@ -138,7 +138,7 @@ absl::optional<Eigen::Matrix4d> ExrInput::MatrixAttribute(int part, const std::s
                OIIO::TypeDesc(OIIO::TypeDesc::DOUBLE, OIIO::TypeDesc::MATRIX44)) {
       matrix(i / 4, i % 4) = wide[i];
     } else {
-      return absl::nullopt;
+      return std::nullopt;
     }
   }
   return matrix;

@@ -11,13 +11,13 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
-#include "absl/types/optional.h"
 
 namespace lightfit::internal {
 
@@ -46,10 +46,10 @@ class ExrInput {
   bool is_uint(ChannelId id) const;
 
   // The channel of that name in the given part, else in the first part that has it.
-  absl::optional<ChannelId> Find(absl::string_view name, int preferred_part) const;
+  std::optional<ChannelId> Find(absl::string_view name, int preferred_part) const;
 
   // The matrix attribute of that name, (r, c) the number 4 r + c as stored.
-  absl::optional<Eigen::Matrix4d> MatrixAttribute(int part, const std::string& name) const;
+  std::optional<Eigen::Matrix4d> MatrixAttribute(int part, const std::string& name) const;
 
   // One channel, row-major over the display window, `outside` where the data window does not reach.
   // Half and float channels are read as float, UINT channels as uint32_t, never across.

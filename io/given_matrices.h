@@ -10,11 +10,11 @@
 
 #include <Eigen/Core>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
-#include "absl/types/optional.h"
 #include "geometry/map_size.h"
 
 namespace lightfit {
@@ -22,7 +22,7 @@ namespace lightfit {
 struct GivenMatrices {
   std::string name;  // of the row
 
-  absl::optional<Eigen::Matrix4d> for_every_light;
+  std::optional<Eigen::Matrix4d> for_every_light;
   std::map<std::string, Eigen::Matrix4d> by_light;  // light name to matrix
 
   // map_from_world of a light. NotFound says which lights there are.

@@ -78,7 +78,7 @@ std::vector<std::string> LightsInFile(const ExrInput& exr, const NameFormat& for
 
 absl::StatusOr<ChannelId> FindDepth(const ExrInput& exr, const std::string& wanted) {
   if (!wanted.empty()) {
-    if (absl::optional<ChannelId> id = exr.Find(wanted, 0)) return *id;
+    if (std::optional<ChannelId> id = exr.Find(wanted, 0)) return *id;
     return absl::NotFoundError(
         absl::StrFormat("%s: depth_channel \"%s\" is not there; channels: %s",
                         exr.path(),
@@ -167,7 +167,7 @@ absl::Status ReadShadowMask(ExrInput& exr,
                             ChannelId depth,
                             const std::string& channel,
                             std::vector<uint32_t>& shadow_bits) {
-  const absl::optional<ChannelId> id = exr.Find(channel, depth.part);
+  const std::optional<ChannelId> id = exr.Find(channel, depth.part);
   if (!id) {
     return absl::NotFoundError(
         absl::StrFormat("%s: shadow_bits_channel \"%s\" is not there; channels: %s",
@@ -192,7 +192,7 @@ absl::Status ReadShadowOfLight(ExrInput& exr,
   const std::string channel = named != options.shadow_channels.end()
                                   ? named->second
                                   : absl::StrCat(format.prefix, light.name, format.suffix);
-  const absl::optional<ChannelId> id = exr.Find(channel, depth.part);
+  const std::optional<ChannelId> id = exr.Find(channel, depth.part);
   if (!id) {
     return absl::NotFoundError(
         absl::StrFormat("light \"%s\": %s has no channel \"%s\"; lights with a shadow channel: %s; "

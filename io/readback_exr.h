@@ -12,12 +12,12 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "absl/types/optional.h"
 #include "absl/types/span.h"
 #include "geometry/camera.h"
 #include "geometry/light.h"
@@ -43,7 +43,7 @@ struct ReadbackExrOptions {
 
   // Set: this camera; its size must be the display window's. Else: the file's attributes, which
   // `camera_exr` says how to read.
-  absl::optional<Camera> camera;
+  std::optional<Camera> camera;
   CameraExrOptions camera_exr;
 
   // Files that declare more pixels than this (display or data window) are refused unread. >= 1.

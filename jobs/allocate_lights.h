@@ -7,11 +7,11 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "absl/types/optional.h"
 #include "optimizer/readback/readback.h"
 #include "wire/allocation_json.h"
 #include "wire/summary_set.h"
@@ -23,15 +23,15 @@ struct AllocationTask {
   FitOptions options;  // of summaries: OptionsForSummaries()
 
   // One of the two; element l of theirs belongs to lights[l].
-  absl::optional<Readback> readback;
-  absl::optional<SummarySet> summaries;
+  std::optional<Readback> readback;
+  std::optional<SummarySet> summaries;
 
   // With a read-back: ok, or why a light has no shadow there.
   std::vector<absl::Status> light_status;
 
   // One of the two.
-  absl::optional<int64_t> budget_texels;
-  absl::optional<Tolerance> tolerance;
+  std::optional<int64_t> budget_texels;
+  std::optional<Tolerance> tolerance;
 
   std::vector<double> weights;  // with a budget; element l belongs to lights[l]
   MapSizeRules rules;

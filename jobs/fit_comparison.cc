@@ -1,26 +1,74 @@
 #include "jobs/fit_comparison.h"
 
 #include <chrono>
+#include <optional>
 #include <utility>
 
+#include "optimizer/evaluate.h"
 #include "optimizer/fit.h"
 
 namespace lightfit {
 
 namespace {
 
-absl::StatusOr<JudgedMatrix> Judged(const Readback& readback,
-                                    const Light& light,
-                                    absl::StatusOr<LightMatrix> matrix,
-                                    const FitOptions& options) {
-  if (!matrix.ok()) return matrix.status();
-  absl::StatusOr<MatrixFigures> figures =
-      EvaluateMatrix(readback, light, matrix->map_from_world, matrix->map, options);
-  if (!figures.ok()) return figures.status();
-  return JudgedMatrix{*std::move(matrix), *std::move(figures)};
+absl::StatusOr<LightMatrix> FitOne(const Surfaces& surfaces,
+                                   const Light& light,
+                                   MapSize map,
+                                   const FitOptions& options) {
+  const absl::StatusOr<LightView> view = ViewLight(surfaces, light, options);
+  if (!view.ok()) return view.status();
+  return FitLight(*view, map, options);
 }
 
+// Judges matrices of one light.
+class Judge {
+ public:
+  static absl::StatusOr<Judge> Of(const Surfaces& surfaces,
+                                  const Light& light,
+                                  const FitOptions& options) {
+    Judge judge;
+    judge.options_ = FigureOptions(options);
+    judge.own_options_ = judge.options_;
+    judge.own_options_.samples = options.samples;
+    absl::StatusOr<LightView> view = ViewLight(surfaces, light, judge.options_);
+    if (!view.ok()) return view.status();
+    judge.view_ = *std::move(view);
+    if (options.samples == judge.options_.samples) return judge;
+    view = ViewLight(surfaces, light, judge.own_options_);
+    if (!view.ok()) return view.status();
+    judge.own_view_ = *std::move(view);
+    return judge;
+  }
+
+  absl::StatusOr<JudgedMatrix> operator()(absl::StatusOr<LightMatrix> matrix) const {
+    if (!matrix.ok()) return matrix.status();
+    absl::StatusOr<Figures> figures =
+        EvaluateMatrix(*view_, matrix->map_from_world, matrix->map, options_);
+    if (!figures.ok()) return figures.status();
+    absl::StatusOr<Figures> own = figures;
+    if (own_view_.has_value()) {
+      own = EvaluateMatrix(*own_view_, matrix->map_from_world, matrix->map, own_options_);
+    }
+    if (!own.ok()) return own.status();
+    return JudgedMatrix{*std::move(matrix), *std::move(figures), *std::move(own)};
+  }
+
+ private:
+  FitOptions options_, own_options_;
+  std::optional<LightView> view_;
+  std::optional<LightView> own_view_;  // absent: the same
+};
+
 }  // namespace
+
+FitOptions FigureOptions(const FitOptions& options) {
+  FitOptions figures = options;
+  figures.samples = SampleOptions();
+  figures.samples.max_depth_bend = options.samples.max_depth_bend;
+  figures.samples.depth_noise = options.samples.depth_noise;
+  figures.cover = Cover::kShadowed;
+  return figures;
+}
 
 FitOptions FocusedOptions(const FitOptions& options) {
   FitOptions focused = options;
@@ -38,22 +86,21 @@ FitOptions PublishedOptions(const FitOptions& options) {
   return published;
 }
 
-Comparison Compare(const Readback& readback,
+Comparison Compare(const Surfaces& surfaces,
                    const Light& light,
                    MapSize map,
                    const FitOptions& options) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
-  absl::StatusOr<LightMatrix> final = FitLight(readback, light, map, options);
+  absl::StatusOr<LightMatrix> final = FitOne(surfaces, light, map, options);
   const double time_ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
   if (!final.ok()) return FailedComparison(light, final.status());
-  const auto yardstick = [&](const FitOptions& yardstick_options) {
-    return Judged(readback, light, FitLight(readback, light, map, yardstick_options), options);
-  };
+  const absl::StatusOr<Judge> judge = Judge::Of(surfaces, light, options);
+  if (!judge.ok()) return FailedComparison(light, judge.status());
   return {light,
-          yardstick(FocusedOptions(options)),
-          yardstick(PublishedOptions(options)),
-          Judged(readback, light, std::move(final), options),
+          (*judge)(FitOne(surfaces, light, map, FocusedOptions(options))),
+          (*judge)(FitOne(surfaces, light, map, PublishedOptions(options))),
+          (*judge)(std::move(final)),
           time_ms};
 }
 

@@ -5,17 +5,18 @@
 
 #include "absl/status/statusor.h"
 #include "geometry/light.h"
-#include "optimizer/figures/evaluate.h"
+#include "optimizer/evaluate.h"
 #include "optimizer/fit_options.h"
 #include "optimizer/light_matrix.h"
-#include "optimizer/readback/readback.h"
+#include "optimizer/readback/surfaces.h"
 
 namespace lightfit {
 
-// A matrix, and its figures by one measure for all: the metric and the samples asked for.
+// A matrix with its figures, foretold wrong pixels among them.
 struct JudgedMatrix {
   LightMatrix matrix;
-  MatrixFigures figures;
+  Figures figures;      // over the samples that all tables are over: FigureOptions()
+  Figures own_figures;  // over the samples of the fit that was asked for, for its result file
 };
 
 struct Comparison {
@@ -23,14 +24,19 @@ struct Comparison {
   absl::StatusOr<JudgedMatrix> focused;    // the usual focused shadow map, without a warp
   absl::StatusOr<JudgedMatrix> published;  // Chong and Gortler's Algorithm 1
   absl::StatusOr<JudgedMatrix> final;      // the method asked for
-  double final_time_ms = 0;                // for this light on its own, read-back in memory
+  double final_time_ms = 0;  // for this light; the surfaces of the read-back are found once for all
 };
+
+// What every table's figures are over, whichever way a matrix was made: the samples that a fit takes
+// by default (SampleOptions), in the metric of `options`.
+FitOptions FigureOptions(const FitOptions& options);
 
 // The yardsticks' options: with the margin of `options`, else as their authors have it.
 FitOptions FocusedOptions(const FitOptions& options);
 FitOptions PublishedOptions(const FitOptions& options);
 
-Comparison Compare(const Readback& readback,
+// `light` of the surfaces' read-back, which must have been found for it.
+Comparison Compare(const Surfaces& surfaces,
                    const Light& light,
                    MapSize map,
                    const FitOptions& options);

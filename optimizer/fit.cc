@@ -13,34 +13,69 @@
 
 namespace lightfit {
 
+namespace {
+
+// The facades of a read-back: its surfaces, the light's view of them, then `ask` of the view.
+template <typename Ask>
+auto AskView(const Readback& readback,
+             const Light& light,
+             const FitOptions& options,
+             const Ask& ask) -> decltype(ask(std::declval<const LightView&>())) {
+  if (absl::Status status = ValidateFitOptions(options); !status.ok()) return status;
+  if (absl::Status status = ValidateLight(light); !status.ok()) return status;
+  const absl::StatusOr<Surfaces> surfaces =
+      FindSurfaces(readback, LightMask(absl::MakeConstSpan(&light, 1)), options.samples);
+  if (!surfaces.ok()) return surfaces.status();
+  const absl::StatusOr<LightView> view = ViewLight(*surfaces, light, options);
+  if (!view.ok()) return view.status();
+  return ask(*view);
+}
+
+// For the L1 metrics gives the samples the weights they have in a map, and sums them up.
+Summary WeighedIn(const Eigen::Matrix3d& map_from_normalized,
+                  Samples samples,
+                  const RayCover& cover,
+                  const MetricWeights& metric) {
+  L1Weights l1 = WeightsForL1(samples, metric, map_from_normalized);
+  samples.weight = std::move(l1.weights);
+  Summary summary = SummarizeSamples(samples, cover, metric);
+  summary.footprint_sum = l1.floored_sum;
+  return summary;
+}
+
+}  // namespace
+
+uint32_t LightMask(absl::Span<const Light> lights) {
+  uint32_t mask = 0;
+  for (const Light& light : lights) {
+    if (ValidateLight(light).ok()) mask |= uint32_t{1} << light.shadow_bit;
+  }
+  return mask;
+}
+
 LightMatrices FitLights(const Readback& readback,
                         absl::Span<const Light> lights,
                         MapSize map,
                         const FitOptions& options) {
-  LightMatrices results(lights.size());
   absl::Status status = ValidateFitOptions(options);
   if (status.ok()) status = ValidateMapSize(map, options.margin_texels);
-  uint32_t light_mask = 0;
-  ScratchVector<absl::Status> light_status;
-  for (const Light& light : lights) {
-    light_status.push_back(ValidateLight(light));
-    if (light_status.back().ok()) light_mask |= uint32_t{1} << light.shadow_bit;
-  }
-  const absl::StatusOr<Receivers> receivers =
-      status.ok() ? FindReceivers(readback, light_mask, options.samples) : status;
+  const absl::StatusOr<Surfaces> surfaces =
+      status.ok() ? FindSurfaces(readback, LightMask(lights), options.samples) : status;
+  if (!surfaces.ok()) return LightMatrices(lights.size(), surfaces.status());
+  return FitLights(*surfaces, lights, map, options);
+}
 
+LightMatrices FitLights(const Surfaces& surfaces,
+                        absl::Span<const Light> lights,
+                        MapSize map,
+                        const FitOptions& options) {
+  LightMatrices results(lights.size());
   for (size_t i = 0; i < lights.size(); ++i) {
-    if (!receivers.ok()) {
-      results[i] = receivers.status();
-    } else if (!light_status[i].ok()) {
-      results[i] = light_status[i];
-    } else if (absl::StatusOr<PreparedLight> prepared =
-                   PrepareLight(*receivers, lights[i], options);
-               !prepared.ok()) {
-      results[i] = prepared.status();
+    const absl::StatusOr<LightView> view = ViewLight(surfaces, lights[i], options);
+    if (view.ok()) {
+      results[i] = FitLight(*view, map, options);
     } else {
-      results[i] =
-          FitInputs({lights[i], prepared->summary, &prepared->samples, &*receivers}, map, options);
+      results[i] = view.status();
     }
   }
   return results;
@@ -53,72 +88,74 @@ absl::StatusOr<LightMatrix> FitLight(const Readback& readback,
   return std::move(FitLights(readback, absl::MakeConstSpan(&light, 1), map, options).front());
 }
 
-namespace {
-
-// For the L1 metrics gives the samples the weights they have in a map, and sums them up.
-void WeighIn(const Eigen::Matrix3d& map_from_normalized,
-             PreparedLight* prepared) {
-  L1Weights l1 =
-      WeightsForL1(prepared->samples, prepared->summary.metric, map_from_normalized);
-  prepared->samples.weight = std::move(l1.weights);
-  prepared->summary = SummarizeSamples(
-      prepared->samples, RayCover(prepared->summary.cover), prepared->summary.metric);
-  prepared->summary.footprint_sum = l1.floored_sum;
+absl::StatusOr<LightMatrix> FitLight(const LightView& view,
+                                     MapSize map,
+                                     const FitOptions& options) {
+  if (absl::Status status = ValidateFitOptions(options); !status.ok()) return status;
+  if (absl::Status status = ValidateMapSize(map, options.margin_texels); !status.ok()) {
+    return status;
+  }
+  if (!view.cover.ok()) return view.cover.status();
+  const Summary summary = SummaryOfView(view, options);
+  return FitMatrix({*view.light, summary, &view.samples, view.surfaces}, map, options);
 }
-
-}  // namespace
 
 absl::StatusOr<Summary> Summarize(const Readback& readback,
                                   const Light& light,
                                   const FitOptions& options) {
-  if (absl::Status status = ValidateFitOptions(options); !status.ok()) return status;
-  if (absl::Status status = ValidateLight(light); !status.ok()) return status;
-  absl::StatusOr<Receivers> receivers =
-      FindReceivers(readback, uint32_t{1} << light.shadow_bit, options.samples);
-  if (!receivers.ok()) return receivers.status();
-  absl::StatusOr<PreparedLight> prepared = PrepareLight(*receivers, light, options);
-  if (!prepared.ok()) return prepared.status();
-  if (IsL1(options.metric) && prepared->summary.counts.used > 0) {
+  return AskView(readback, light, options, [&](const LightView& view) {
+    return Summarize(view, options);
+  });
+}
+
+absl::StatusOr<Summary> Summarize(const LightView& view, const FitOptions& options) {
+  if (!view.cover.ok()) return view.cover.status();
+  const Light& light = *view.light;
+  Summary summary = SummaryOfView(view, options);
+  if (IsL1(options.metric) && summary.counts.used > 0) {
     // The weights come from the best map of this read-back; its size does not matter, as footprints
     // in proportion give weights in proportion.
     constexpr MapSize kAnySquare = {1024, 1024};
-    const absl::StatusOr<SearchOutcome> outcome = SearchAxis(
-        {light, prepared->summary, &prepared->samples, &*receivers}, kAnySquare, options);
-    if (!outcome.ok()) return outcome.status();
-    WeighIn(outcome->result.fit.map_from_ray, &*prepared);
+    const absl::StatusOr<SearchResult> result =
+        SearchAxis({light, summary, &view.samples, view.surfaces}, kAnySquare, options);
+    if (!result.ok()) return result.status();
+    summary =
+        WeighedIn(result->fit.map_from_ray, view.samples, *view.cover, summary.metric);
   }
   if (absl::Status status = CheckStop(light); !status.ok()) return status;
-  return std::move(prepared->summary);
+  return summary;
 }
 
 absl::StatusOr<Summary> SummarizeInMap(const Readback& readback,
                                        const Light& light,
                                        const Eigen::Matrix4d& map_from_world,
                                        const FitOptions& options) {
-  if (absl::Status status = ValidateFitOptions(options); !status.ok()) return status;
-  if (absl::Status status = ValidateLight(light); !status.ok()) return status;
+  return AskView(readback, light, options, [&](const LightView& view) {
+    return SummarizeInMap(view, map_from_world, options);
+  });
+}
+
+absl::StatusOr<Summary> SummarizeInMap(const LightView& view,
+                                       const Eigen::Matrix4d& map_from_world,
+                                       const FitOptions& options) {
+  const Light& light = *view.light;
   const absl::StatusOr<Eigen::Matrix3d> map_from_ray = MapFromRay(map_from_world, light);
   if (!map_from_ray.ok()) return map_from_ray.status();
-  const absl::StatusOr<Receivers> receivers =
-      FindReceivers(readback, uint32_t{1} << light.shadow_bit, options.samples);
-  if (!receivers.ok()) return receivers.status();
-  absl::StatusOr<PreparedLight> prepared = PrepareLight(*receivers, light, options);
-  if (!prepared.ok()) return prepared.status();
-  if (!IsL1(options.metric) || prepared->summary.counts.used == 0) {
-    return std::move(prepared->summary);
-  }
+  if (!view.cover.ok()) return view.cover.status();
+  Summary summary = SummaryOfView(view, options);
+  if (absl::Status status = CheckStop(light); !status.ok()) return status;
+  if (!IsL1(options.metric) || summary.counts.used == 0) return summary;
   const Eigen::Matrix3d map_from_normalized =
-      *map_from_ray * prepared->summary.cover.normalized_from_ray.inverse();
+      *map_from_ray * view.cover->normalized_from_ray.inverse();
   // Of those the map gives no footprint to, the cover is all that is left.
-  prepared->samples = SamplesInFront(prepared->samples, map_from_normalized.row(2));
+  Samples samples = SamplesInFront(view.samples, map_from_normalized.row(2));
   if (absl::Status status = CheckStop(light); !status.ok()) return status;
-  prepared->samples.counts.used = static_cast<int64_t>(prepared->samples.size());
-  if (prepared->samples.size() == 0) {
-    return SummarizeSamples(prepared->samples, prepared->summary.cover, prepared->summary.metric);
-  }
-  WeighIn(map_from_normalized, &*prepared);
+  samples.counts.used = static_cast<int64_t>(samples.size());
+  if (samples.size() == 0) return SummarizeSamples(samples, *view.cover, summary.metric);
+  summary =
+      WeighedIn(map_from_normalized, std::move(samples), *view.cover, summary.metric);
   if (absl::Status status = CheckStop(light); !status.ok()) return status;
-  return std::move(prepared->summary);
+  return summary;
 }
 
 absl::StatusOr<LightMatrix> Fit(const Summary& summary,
@@ -139,11 +176,10 @@ absl::StatusOr<LightMatrix> Fit(const Summary& summary,
       (IsL1(options.metric) ? !has_weights : summary.footprint_sum > 0.0)) {
     return absl::InvalidArgumentError(
         "options.metric or along_edge_share is not what the samples were summed with: summarise "
-        "and "
-        "fit with the same FitOptions");
+        "and fit with the same FitOptions");
   }
   // Done once for a whole shot, however its frames came together.
-  return FitInputs({light, summary, nullptr, nullptr, /*to_the_end=*/true}, map, options);
+  return FitMatrix({light, summary}, map, options, SearchEffort::kToTheEnd);
 }
 
 }  // namespace lightfit

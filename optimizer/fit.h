@@ -2,7 +2,7 @@
 //
 // In:      Readback {camera, depth, shadow bits}, Light, MapSize, FitOptions.
 // Out:     LightMatrix {map_from_world, energy, footprint statistics, trace}.
-// Flow:    Readback -> Receivers -> Samples -> Summary {T, count, cone of rays}
+// Flow:    Readback -> Surfaces -> LightView {samples, cover} -> Summary {T, count, cone of rays}
 //          -> axis + affine part -> LightMatrix.
 // Symbols: X ray, D = d(screen)/d(ray), H map_from_ray, p = h3 axis, w = h3.X.  docs/mathematics.md
 // Errors:  InvalidArgument: an input is wrong; the message names field, value and remedy.
@@ -15,6 +15,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
@@ -23,6 +24,7 @@
 #include "optimizer/energy/summary.h"
 #include "optimizer/fit_options.h"
 #include "optimizer/light_matrix.h"
+#include "optimizer/light_view.h"
 #include "optimizer/readback/readback.h"
 
 namespace lightfit {
@@ -42,6 +44,9 @@ LightMatrices FitLights(const Readback& readback,
                         absl::Span<const Light> lights,
                         MapSize map,
                         const FitOptions& options = {});
+
+// The shadow bits of those of the lights that can be used: what FindSurfaces() is to look at.
+uint32_t LightMask(absl::Span<const Light> lights);
 
 // The two halves of FitLight: everything the read-back has to say about this light, in about a
 // kilobyte, and the fit from that alone. Summaries of one light add
@@ -63,6 +68,20 @@ absl::StatusOr<LightMatrix> Fit(const Summary& summary,
 // beyond the map. InvalidArgument when the matrix is not one of this light.
 absl::StatusOr<Summary> SummarizeInMap(const Readback& readback,
                                        const Light& light,
+                                       const Eigen::Matrix4d& map_from_world,
+                                       const FitOptions& options = {});
+
+// All of these once more for who asks several things of one read-back: of its surfaces, or of a
+// light's view in them, made with the same options. Bit for bit the same.
+LightMatrices FitLights(const Surfaces& surfaces,
+                        absl::Span<const Light> lights,
+                        MapSize map,
+                        const FitOptions& options = {});
+absl::StatusOr<LightMatrix> FitLight(const LightView& view,
+                                     MapSize map,
+                                     const FitOptions& options = {});
+absl::StatusOr<Summary> Summarize(const LightView& view, const FitOptions& options = {});
+absl::StatusOr<Summary> SummarizeInMap(const LightView& view,
                                        const Eigen::Matrix4d& map_from_world,
                                        const FitOptions& options = {});
 

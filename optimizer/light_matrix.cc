@@ -10,11 +10,11 @@ std::string LightMatrix::BriefReport() const {
                          absl::string_view(light_name),
                          map.width,
                          map.height,
-                         energy,
-                         energy_start,
-                         footprint.rms,
-                         footprint.worst,
-                         StopReasonName(stop_reason));
+                         figures.energy,
+                         search.energy_start,
+                         figures.footprint.rms,
+                         figures.footprint.worst,
+                         StopReasonName(search.stop_reason));
 }
 
 }  // namespace lightfit

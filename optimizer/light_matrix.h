@@ -8,8 +8,7 @@
 
 #include "base/scratch.h"
 #include "geometry/map_size.h"
-#include "optimizer/energy/footprint.h"
-#include "optimizer/readback/sample_counts.h"
+#include "optimizer/figures/figures.h"
 #include "optimizer/search/search_result.h"
 
 namespace lightfit {
@@ -23,17 +22,9 @@ struct LightMatrix {
   // of the rays w is 1 for a directional light, and the distance along them for a point light.
   Eigen::Matrix4d map_from_world = Eigen::Matrix4d::Identity();
 
-  // Sum over the samples in the metric that was minimised: of squared footprints, (read-back pixels
-  // per texel)^2, or of footprints for the L1 metrics.   math.md (3)
-  double energy = 0;
-  double energy_start = 0;  // where the search began; energy never exceeds it
-
-  FootprintStatistics footprint;
-  SampleCounts samples;
-  StopReason stop_reason = StopReason::kConverged;
-  int evaluations = 0;
-  ScratchVector<TraceStep> trace;
-  std::string solver_report;  // Ceres' own words, Refiner::kCeres only
+  // Over the samples of the fit's own options; the energy is what was minimised.
+  Figures figures;
+  SearchReport search;
 
   // "sun: 1024x1024, energy 12.3 (start 20.1), rms 0.12 px, worst 0.8 px, converged"
   std::string BriefReport() const;

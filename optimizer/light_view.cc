@@ -113,60 +113,70 @@ absl::StatusOr<LightMatrix> LayMatrix(const SearchInputs& inputs,
     return absl::InternalError(
         absl::StrFormat("light \"%s\": the matrix is not finite; please report this", light.name));
   }
-  matrix.samples = summary.counts;
+  matrix.figures.samples = summary.counts;
   if (inputs.samples != nullptr && options.compute_statistics) {
-    matrix.footprint =
-        ComputeFootprintStatistics(map_from_normalized, *inputs.samples);
+    matrix.figures.footprint = ComputeFootprintStatistics(map_from_normalized, *inputs.samples);
   } else if (summary.counts.used > 0 && options.metric == Metric::kL2) {
     const double energy = summary.tensor.Energy(map_from_normalized);
-    matrix.footprint.rms = std::sqrt(std::max(0.0, 0.5 * energy / summary.total_weight));
+    matrix.figures.footprint.rms = std::sqrt(std::max(0.0, 0.5 * energy / summary.total_weight));
   }
   return matrix;
 }
 
 }  // namespace
 
-absl::StatusOr<PreparedLight> PrepareLight(const Receivers& receivers,
-                                           const Light& light,
-                                           const FitOptions& options) {
-  absl::StatusOr<RayCover> cover = CoverReceivers(receivers, light, options.cover);
-  if (!cover.ok()) return cover.status();
+absl::StatusOr<LightView> ViewLight(const Surfaces& surfaces,
+                                    const Light& light,
+                                    const FitOptions& options) {
+  if (absl::Status status = ValidateLight(light); !status.ok()) return status;
+  if (options.samples.max_depth_bend != surfaces.options.max_depth_bend ||
+      options.samples.depth_noise != surfaces.options.depth_noise) {
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "options.samples: max_depth_bend = %g and depth_noise = %g are not those that the surfaces "
+        "were found with, %g and %g; find them anew (FindSurfaces)",
+        options.samples.max_depth_bend,
+        options.samples.depth_noise,
+        surfaces.options.max_depth_bend,
+        surfaces.options.depth_noise));
+  }
+  LightView view = {&surfaces, &light, CoverReceivers(surfaces, light, options.cover), Samples()};
   const MetricWeights metric = WeightsOf(options.metric, options.along_edge_share);
-  PreparedLight prepared;
-  prepared.samples = SelectSamples(receivers,
-                                   light,
-                                   cover->normalized_from_ray,
-                                   /*with_edge_normals=*/metric.across_edge > 0.0);
-  prepared.summary = SummarizeSamples(prepared.samples, *cover, metric);
+  view.samples = SelectSamples(surfaces,
+                               light,
+                               options.samples,
+                               view.normalized_from_ray(),
+                               /*with_edge_normals=*/metric.across_edge > 0.0);
   if (absl::Status status = CheckStop(light); !status.ok()) return status;
-  return prepared;
+  return view;
 }
 
-absl::StatusOr<LightMatrix> FitInputs(const SearchInputs& inputs,
+Summary SummaryOfView(const LightView& view, const FitOptions& options) {
+  return SummarizeSamples(
+      view.samples, *view.cover, WeightsOf(options.metric, options.along_edge_share));
+}
+
+absl::StatusOr<LightMatrix> FitMatrix(const SearchInputs& inputs,
                                       MapSize map,
-                                      const FitOptions& options) {
+                                      const FitOptions& options,
+                                      SearchEffort effort) {
   const Summary& summary = inputs.summary;
   const Light& light = inputs.light;
   if (absl::Status status = CheckStop(light); !status.ok()) return status;
   if (options.search != Search::kFocused && summary.counts.used < options.samples.min_samples) {
     return TooFewSamplesError(light, summary.counts, options.samples.min_samples);
   }
-  absl::StatusOr<SearchOutcome> outcome = SearchAxis(inputs, map, options);
-  if (!outcome.ok()) return outcome.status();
-  const Eigen::Matrix3d map_from_normalized = Unmirrored(outcome->result.fit.map_from_ray, map);
+  absl::StatusOr<SearchResult> result = SearchAxis(inputs, map, options, effort);
+  if (!result.ok()) return result.status();
+  const Eigen::Matrix3d map_from_normalized = Unmirrored(result->fit.map_from_ray, map);
   absl::StatusOr<LightMatrix> matrix = LayMatrix(inputs, map_from_normalized, map, options);
   if (absl::Status status = CheckStop(light); !status.ok()) return status;
   if (!matrix.ok()) return matrix.status();
-  matrix->energy = outcome->result.fit.energy;
-  matrix->energy_start = outcome->energy_start;
-  matrix->evaluations = outcome->evaluations;
-  matrix->trace = std::move(outcome->result.trace);
-  matrix->solver_report = std::move(outcome->solver_report);
-  matrix->stop_reason = outcome->result.stop_reason;
+  matrix->figures.energy = result->fit.energy;
+  matrix->search = std::move(result->report);
   const double w_min = RangeOfW(summary.cover.hull, map_from_normalized.row(2)).first;
   const bool searched = options.search != Search::kFocused;
   if (searched && w_min <= options.min_w * (1.0 + 1e-3)) {
-    matrix->stop_reason = StopReason::kAxisAtLimit;
+    matrix->search.stop_reason = StopReason::kAxisAtLimit;
   }
   return matrix;
 }
@@ -179,14 +189,13 @@ absl::StatusOr<LightMatrix> MatrixOfMap(const SearchInputs& inputs,
       LayMatrix(inputs, Unmirrored(map_from_normalized, map), map, options);
   if (!matrix.ok()) return matrix;
   if (inputs.summary.counts.used > 0) {
-    matrix->energy =
+    matrix->figures.energy =
         IsL1(options.metric) && inputs.samples != nullptr
-            ? WeightsForL1(
-                  *inputs.samples, inputs.summary.metric, map_from_normalized)
+            ? WeightsForL1(*inputs.samples, inputs.summary.metric, map_from_normalized)
                   .footprint_sum
             : inputs.summary.tensor.Energy(map_from_normalized);
-    matrix->energy_start = matrix->energy;
-    matrix->stop_reason = StopReason::kNoSearch;
+    matrix->search.energy_start = matrix->figures.energy;
+    matrix->search.stop_reason = StopReason::kNoSearch;
   }
   if (absl::Status status = CheckStop(inputs.light); !status.ok()) return status;
   return matrix;

@@ -1,42 +1,59 @@
 // optimizer/light_view.h
 //
-// One light of a read-back, made ready once to be fitted and judged as often as one likes: the
-// stations of FitLight() one by one.
-// In:   Receivers, Light, FitOptions (checked by ValidateFitOptions()).
-// Out:  PreparedLight {samples, summary}; from it a LightMatrix, and the matrix of any other map.
+// One light in one read-back: made once, and all that is asked about the light is asked of it.
+// In:   Surfaces, a Light, FitOptions that say which samples count and what the map must cover.
+// Out:  LightView {cover, samples}; what comes of it is in optimizer/fit.h and optimizer/figures.
 #pragma once
 
 #include <Eigen/Core>
 
-#include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "geometry/light.h"
 #include "geometry/map_size.h"
-#include "optimizer/energy/summary.h"
 #include "optimizer/fit_options.h"
 #include "optimizer/light_matrix.h"
+#include "optimizer/readback/cover.h"
 #include "optimizer/readback/samples.h"
 #include "optimizer/readback/surfaces.h"
 #include "optimizer/search/axis_search.h"
 
 namespace lightfit {
 
-struct PreparedLight {
-  Samples samples;  // in the summary's normalised rays
-  Summary summary;
+struct LightView {
+  const Surfaces* surfaces;  // must outlive the view, as must the light
+  const Light* light;
+
+  // What the map must have room for, or why no single map has: FailedPrecondition as
+  // CoverReceivers(). Somebody's matrix can be judged all the same.
+  absl::StatusOr<RayCover> cover;
+
+  // In the cover's normalised rays, which keep precision however far the light is; in light space
+  // where there is no cover, as receivers surround the light and it is near enough for that. May be
+  // none. They have edge normals where FitOptions::metric counts what lies across edges.
+  Samples samples;
+
+  Eigen::Matrix3d normalized_from_ray() const {
+    return cover.ok() ? cover->normalized_from_ray : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
+  }
 };
 
 // Here and below: CancelledError once a StopScope says so.
 
-// FailedPrecondition as CoverReceivers(). A light without any sample is a result.
-absl::StatusOr<PreparedLight> PrepareLight(const Receivers& receivers,
-                                           const Light& light,
-                                           const FitOptions& options);
+// Of `options` count `samples`, `cover` and whether `metric` needs edge normals; whoever takes the
+// view wants the same. InvalidArgument for a light that cannot be used, or samples that the surfaces
+// were not found for (FindSurfaces()).
+absl::StatusOr<LightView> ViewLight(const Surfaces& surfaces,
+                                    const Light& light,
+                                    const FitOptions& options);
+
+// The samples summed up in the metric. Requires view.cover.ok().
+Summary SummaryOfView(const LightView& view, const FitOptions& options);
 
 // The fit: search, then the matrix. `map` has passed ValidateMapSize().
-absl::StatusOr<LightMatrix> FitInputs(const SearchInputs& inputs,
+absl::StatusOr<LightMatrix> FitMatrix(const SearchInputs& inputs,
                                       MapSize map,
-                                      const FitOptions& options);
+                                      const FitOptions& options,
+                                      SearchEffort effort = SearchEffort::kUsual);
 
 // The same without the search: the matrix of a map that is there already (rows h1, h2 and p, from
 // the summary's normalised rays), with its depth row laid over these receivers, and its figures.

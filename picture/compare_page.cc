@@ -136,7 +136,7 @@ class Page {
     const int64_t count = CountOf(map, options_.bias);
     std::string caption = absl::StrCat(count, count == 1 ? " wrong pixel" : " wrong pixels");
     if (!is_ours && HasImage(light_.lightfit())) {
-      const absl::optional<double> ratio =
+      const std::optional<double> ratio =
           RatioOf(static_cast<double>(count),
                   static_cast<double>(CountOf(light_.lightfit(), options_.bias)));
       if (ratio.has_value()) absl::StrAppend(&caption, ", ", FigureText(*ratio), " x lightfit");

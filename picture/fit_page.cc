@@ -83,15 +83,16 @@ std::vector<ReceiverRole> RolesOfReceivers(const Readback& readback,
   return roles;
 }
 
-absl::StatusOr<Row> MakeRow(const Readback& readback,
+absl::StatusOr<Row> MakeRow(const Surfaces& surfaces,
                             const std::vector<Eigen::Vector3d>& receivers,
                             const Comparison& light,
                             MapSize map,
                             const SampleOptions& options) {
+  const Readback& readback = surfaces.readback;
   Row row;
   row.status = light.final.status();
   if (!row.status.ok()) return row;
-  absl::StatusOr<std::vector<uint8_t>> samples = SampleImage(readback, light.light, options);
+  absl::StatusOr<std::vector<uint8_t>> samples = SampleImage(surfaces, light.light, options);
   if (!samples.ok()) return samples.status();
   row.samples = *std::move(samples);
   const std::vector<ReceiverRole> roles = RolesOfReceivers(readback, light.light, row.samples);
@@ -125,18 +126,18 @@ LogScale SharedScale(const Row& row) {
 }
 
 // "3.08 times fewer than focused", or more: never a ratio below 1, which has to be read twice.
-std::string GainText(const MatrixFigures& before,
-                     const MatrixFigures& after,
-                     absl::string_view name) {
-  if (!(after.wrong_share > 0 && before.wrong_share > 0)) return absl::StrCat("beside ", name);
-  const double gain = before.wrong_share / after.wrong_share;
+std::string GainText(const Figures& before, const Figures& after, absl::string_view name) {
+  const double wrong_before = before.wrong_share.value_or(0.0);
+  const double wrong_after = after.wrong_share.value_or(0.0);
+  if (!(wrong_after > 0.0 && wrong_before > 0.0)) return absl::StrCat("beside ", name);
+  const double gain = wrong_before / wrong_after;
   return absl::StrCat(FigureText(gain < 1 ? 1 / gain : gain),
                       gain < 1 ? " times more than " : " times fewer than ",
                       name);
 }
 
 std::string Verdict(const Comparison& light) {
-  const MatrixFigures& final = light.final->figures;
+  const Figures& final = light.final->figures;
   std::string text = light.focused.ok()
                          ? absl::StrCat("wrong pixels foretold: ",
                                         GainText(light.focused->figures, final, "focused"))
@@ -185,7 +186,7 @@ class Page {
     const bool is_behind =
         light.focused.ok() && light.final->figures.wrong_share > light.focused->figures.wrong_share;
     RowHeader(light.light.name, Verdict(light), is_behind ? kWarningColor : kGainColor);
-    const SampleCounts& counts = light.final->matrix.samples;
+    const SampleCounts& counts = light.final->matrix.figures.samples;
     Text(layout_.width - kMargin,
          y_ - kRowHeaderHeight + 30,
          absl::StrFormat("%d of %d shadow-edge pixels used", counts.used, counts.candidates),
@@ -195,12 +196,12 @@ class Page {
     const auto draw = [&](int column,
                           const std::string& heat_title,
                           const std::string& map_title,
-                          const MatrixFigures& figures,
+                          const Figures& figures,
                           const Panels& panels) {
       PanelHeader(layout_.HeatX(column),
                   heat_title,
                   absl::StrFormat("%s %% of the image wrong; texel footprint: rms %s, 99 %% %s px",
-                                  PercentText(figures.wrong_share),
+                                  PercentText(figures.wrong_share.value_or(0.0)),
                                   FigureText(figures.footprint.rms),
                                   FigureText(figures.footprint.p99)));
       canvas_.DrawImage(
@@ -281,11 +282,12 @@ class Page {
 
 }  // namespace
 
-absl::StatusOr<Canvas> DrawPicture(const Readback& readback,
+absl::StatusOr<Canvas> DrawPicture(const Surfaces& surfaces,
                                    const std::vector<Comparison>& lights,
                                    MapSize map,
                                    const PictureOptions& options,
                                    const Typeface& typeface) {
+  const Readback& readback = surfaces.readback;
   const absl::StatusOr<std::vector<Eigen::Vector3d>> receivers = ReceiverPositions(readback);
   if (!receivers.ok()) return receivers.status();
   const Layout layout = LayoutFor(readback);
@@ -293,7 +295,7 @@ absl::StatusOr<Canvas> DrawPicture(const Readback& readback,
   std::vector<std::vector<std::string>> messages;
   int height = kTitleHeight + kLegendHeight;
   for (const Comparison& light : lights) {
-    absl::StatusOr<Row> row = MakeRow(readback, *receivers, light, map, options.samples);
+    absl::StatusOr<Row> row = MakeRow(surfaces, *receivers, light, map, options.samples);
     if (!row.ok()) return row.status();
     rows.push_back(*std::move(row));
     const absl::Status& status = rows.back().status;

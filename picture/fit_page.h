@@ -14,7 +14,7 @@
 
 #include "absl/status/statusor.h"
 #include "jobs/fit_comparison.h"
-#include "optimizer/readback/readback.h"
+#include "optimizer/readback/surfaces.h"
 #include "picture/canvas.h"
 #include "picture/text.h"
 
@@ -26,7 +26,7 @@ struct PictureOptions {
   std::string final_label;  // what "after" is, for the panel titles: "lightfit", "as published"
 };
 
-absl::StatusOr<Canvas> DrawPicture(const Readback& readback,
+absl::StatusOr<Canvas> DrawPicture(const Surfaces& surfaces,
                                    const std::vector<Comparison>& lights,
                                    MapSize map,
                                    const PictureOptions& options,

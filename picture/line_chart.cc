@@ -117,7 +117,7 @@ class Plot {
   }
 
  private:
-  bool HasPlace(const absl::optional<double>& value) const {
+  bool HasPlace(const std::optional<double>& value) const {
     return value.has_value() && std::isfinite(*value) && (!axis_.log || *value > 0.0);
   }
 
@@ -150,7 +150,7 @@ double ChartAxis::Position(double value) const {
 ChartAxis AxisFor(const LineChart& chart) {
   double least = std::numeric_limits<double>::infinity(), greatest = -least;
   for (const ChartLine& line : chart.lines) {
-    for (const absl::optional<double>& value : line.values) {
+    for (const std::optional<double>& value : line.values) {
       if (!value.has_value() || !std::isfinite(*value)) continue;
       if (chart.log_y && !(*value > 0.0)) continue;
       least = std::min(least, *value);

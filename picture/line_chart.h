@@ -5,18 +5,18 @@
 // Out:  the chart, drawn on a Canvas.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "absl/types/optional.h"
 #include "picture/canvas.h"
 #include "picture/text.h"
 
 namespace lightfit {
 
 struct ChartLine {
-  std::vector<absl::optional<double>> values;  // by x; where there is none the line is interrupted
-  std::vector<bool> dots;                      // by x: whether the value has a dot; empty: none
+  std::vector<std::optional<double>> values;  // by x; where there is none the line is interrupted
+  std::vector<bool> dots;                     // by x: whether the value has a dot; empty: none
   Rgb color;
 };
 

@@ -40,7 +40,7 @@ Rgb ModeColor(ShotMode mode) {
   return kTextColor;
 }
 
-using Value = std::function<absl::optional<double>(const ShotRow&)>;
+using Value = std::function<std::optional<double>(const ShotRow&)>;
 
 struct ChartKind {
   std::string caption;
@@ -49,24 +49,24 @@ struct ChartKind {
   bool has_dots = false;
 };
 
-absl::optional<double> EdgeCrawl(const ShotRow& row) {
-  if (!row.crawl.has_value() || row.crawl->num_edge_points == 0) return absl::nullopt;
+std::optional<double> EdgeCrawl(const ShotRow& row) {
+  if (!row.crawl.has_value() || row.crawl->num_edge_points == 0) return std::nullopt;
   return row.crawl->edge_crawl_px;
 }
 
 std::vector<ChartKind> ChartKinds(const ShotJob& job, const ShotRows& rows) {
   const bool has_ratio = job.Has(ShotMode::kPerFrame);
   const ChartKind energy = {has_ratio ? "energy, as a multiple of per-frame" : "energy",
-                            [&rows, has_ratio](const ShotRow& row) -> absl::optional<double> {
+                            [&rows, has_ratio](const ShotRow& row) -> std::optional<double> {
                               if (has_ratio) return EnergyRatio(rows, row);
-                              if (!row.error.empty()) return absl::nullopt;
+                              if (!row.error.empty()) return std::nullopt;
                               return row.energy;
                             },
                             /*log_y=*/true,
                             /*has_dots=*/true};
   const ChartKind footprint = {"rms footprint, read-back pixels per texel",
-                               [](const ShotRow& row) -> absl::optional<double> {
-                                 if (!row.error.empty()) return absl::nullopt;
+                               [](const ShotRow& row) -> std::optional<double> {
+                                 if (!row.error.empty()) return std::nullopt;
                                  return row.footprint.rms;
                                }};
   return {energy, footprint, {"crawl of shadow edges, read-back pixels per frame", EdgeCrawl}};
@@ -82,7 +82,7 @@ LineChart ChartOf(const ShotJob& job, const ShotRows& rows, size_t light, const 
     line.color = ModeColor(mode);
     for (const std::vector<ShotRow>& frame : rows[static_cast<size_t>(mode)]) {
       const ShotRow* row = light < frame.size() ? &frame[light] : nullptr;
-      line.values.push_back(row == nullptr ? absl::nullopt : kind.value(*row));
+      line.values.push_back(row == nullptr ? std::nullopt : kind.value(*row));
       line.dots.push_back(kind.has_dots && mode == ShotMode::kTracked && row != nullptr &&
                           row->moved);
     }

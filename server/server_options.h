@@ -4,10 +4,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "absl/time/time.h"
-#include "absl/types/optional.h"
 #include "calls/call_context.h"
 #include "server/tls.h"
 
@@ -29,7 +29,7 @@ struct ServerLimits {
 
 struct ServerOptions {
   std::string listen = "127.0.0.1:50071";  // as ParseListenAddress()
-  absl::optional<TlsOptions> tls;          // without: plain text
+  std::optional<TlsOptions> tls;           // without: plain text
   bool allow_insecure = false;             // whether plain text may leave this machine
   ServerLimits limits;
 

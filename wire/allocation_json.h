@@ -7,12 +7,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "absl/types/optional.h"
 #include "lightfit/v1/allocation.pb.h"
 #include "optimizer/sizing/map_sizes.h"
 #include "optimizer/sizing/tolerance.h"
@@ -30,16 +30,16 @@ struct ReachedTolerance {
 // Beside the light's fit.
 struct AllocationEntry {
   double weight = 1.0;
-  absl::optional<double> equal_split_energy;  // in a square map of an equal share of the budget
-  absl::optional<ReachedTolerance> reached;
+  std::optional<double> equal_split_energy;  // in a square map of an equal share of the budget
+  std::optional<ReachedTolerance> reached;
 };
 
 struct AllocationReport {
   FitReport fit;                         // FitReport::map is that of lights without one: 0 x 0
   std::vector<AllocationEntry> entries;  // element i belongs to fit.lights[i]
   MapSizeRules rules;
-  absl::optional<int64_t> budget_texels;  // or
-  absl::optional<Tolerance> tolerance;
+  std::optional<int64_t> budget_texels;  // or
+  std::optional<Tolerance> tolerance;
 
   int64_t Texels() const;  // of all maps together
 

@@ -97,7 +97,7 @@ Eigen::Matrix4d InverseOfPose(const Eigen::Matrix4d& pose) {
 }
 
 absl::StatusOr<StatedCamera> CameraFromProto(const v1::Camera& proto) {
-  const absl::StatusOr<absl::optional<DepthKind>> depth_kind =
+  const absl::StatusOr<std::optional<DepthKind>> depth_kind =
       DepthKindFromProto(proto.depth_kind());
   if (!depth_kind.ok()) return depth_kind.status();
   absl::StatusOr<Camera> camera = CameraOfProto(proto);
@@ -109,7 +109,7 @@ absl::StatusOr<StatedCamera> CameraFromProto(const v1::Camera& proto) {
   return StatedCamera{*std::move(camera), *depth_kind};
 }
 
-v1::Camera CameraToProto(const Camera& camera, absl::optional<DepthKind> depth_kind) {
+v1::Camera CameraToProto(const Camera& camera, std::optional<DepthKind> depth_kind) {
   v1::Camera proto;
   proto.set_width(camera.width);
   proto.set_height(camera.height);
@@ -127,20 +127,20 @@ v1::Camera CameraToProto(const Camera& camera, absl::optional<DepthKind> depth_k
   return proto;
 }
 
-absl::StatusOr<absl::optional<DepthKind>> DepthKindFromProto(v1::DepthKind kind) {
+absl::StatusOr<std::optional<DepthKind>> DepthKindFromProto(v1::DepthKind kind) {
   switch (kind) {
     case v1::DEPTH_KIND_UNSPECIFIED:
-      return absl::optional<DepthKind>();
+      return std::optional<DepthKind>();
     case v1::DEPTH_KIND_CAMERA_Z:
-      return absl::optional<DepthKind>(DepthKind::kCameraZ);
+      return std::optional<DepthKind>(DepthKind::kCameraZ);
     case v1::DEPTH_KIND_DISTANCE:
-      return absl::optional<DepthKind>(DepthKind::kDistance);
+      return std::optional<DepthKind>(DepthKind::kDistance);
     case v1::DEPTH_KIND_NDC_ZERO_TO_ONE:
-      return absl::optional<DepthKind>(DepthKind::kNdcZeroToOne);
+      return std::optional<DepthKind>(DepthKind::kNdcZeroToOne);
     case v1::DEPTH_KIND_NDC_MINUS_ONE_TO_ONE:
-      return absl::optional<DepthKind>(DepthKind::kNdcMinusOneToOne);
+      return std::optional<DepthKind>(DepthKind::kNdcMinusOneToOne);
     case v1::DEPTH_KIND_NDC_REVERSED_ZERO_TO_ONE:
-      return absl::optional<DepthKind>(DepthKind::kNdcReversedZeroToOne);
+      return std::optional<DepthKind>(DepthKind::kNdcReversedZeroToOne);
     default:
       return absl::InvalidArgumentError(
           absl::StrFormat("depth_kind = %d, want one of lightfit.v1.DepthKind", kind));

@@ -6,10 +6,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
-#include "absl/types/optional.h"
 #include "geometry/camera.h"
 #include "lightfit/v1/camera.pb.h"
 
@@ -17,16 +17,16 @@ namespace lightfit {
 
 struct StatedCamera {
   Camera camera;
-  absl::optional<DepthKind> depth_kind;
+  std::optional<DepthKind> depth_kind;
 };
 
 absl::StatusOr<StatedCamera> CameraFromProto(const v1::Camera& proto);
 
 // Writes the pose and the intrinsics; reading them back gives the same camera.
-v1::Camera CameraToProto(const Camera& camera, absl::optional<DepthKind> depth_kind = {});
+v1::Camera CameraToProto(const Camera& camera, std::optional<DepthKind> depth_kind = {});
 
 // Unspecified becomes absent; a number that this version does not know is an error.
-absl::StatusOr<absl::optional<DepthKind>> DepthKindFromProto(v1::DepthKind kind);
+absl::StatusOr<std::optional<DepthKind>> DepthKindFromProto(v1::DepthKind kind);
 v1::DepthKind DepthKindToProto(DepthKind kind);
 
 // A pose as it comes from outside: InvalidArgument, naming `field`, unless it is rigid or mirrored

@@ -29,19 +29,20 @@ v1::StopReason StopReasonToProto(StopReason reason) {
 
 v1::Energies EnergiesToProto(const LightMatrix& matrix, const LightFit& fit) {
   v1::Energies proto;
-  proto.set_final(matrix.energy);
-  proto.set_start(matrix.energy_start);
-  if (matrix.energy_start > 0.0) proto.set_final_over_start(matrix.energy / matrix.energy_start);
+  proto.set_final(matrix.figures.energy);
+  proto.set_start(matrix.search.energy_start);
+  if (matrix.search.energy_start > 0.0)
+    proto.set_final_over_start(matrix.figures.energy / matrix.search.energy_start);
   if (fit.focused) {
     proto.set_focused(fit.focused->energy);
     if (fit.focused->energy > 0.0) {
-      proto.set_final_over_focused(matrix.energy / fit.focused->energy);
+      proto.set_final_over_focused(matrix.figures.energy / fit.focused->energy);
     }
   }
   if (fit.as_published) {
     proto.set_as_published(fit.as_published->energy);
     if (fit.as_published->energy > 0.0) {
-      proto.set_final_over_as_published(matrix.energy / fit.as_published->energy);
+      proto.set_final_over_as_published(matrix.figures.energy / fit.as_published->energy);
     }
   }
   return proto;
@@ -50,8 +51,8 @@ v1::Energies EnergiesToProto(const LightMatrix& matrix, const LightFit& fit) {
 v1::ForetoldWrong ForetoldToProto(const LightFit& fit) {
   v1::ForetoldWrong proto;
   proto.set_final(*fit.wrong_share);
-  if (fit.focused) proto.set_focused(fit.focused->wrong_share);
-  if (fit.as_published) proto.set_as_published(fit.as_published->wrong_share);
+  if (fit.focused) proto.set_focused(fit.focused->wrong_share.value_or(0.0));
+  if (fit.as_published) proto.set_as_published(fit.as_published->wrong_share.value_or(0.0));
   return proto;
 }
 
@@ -76,13 +77,13 @@ v1::LightResult LightResultToProto(const LightFit& fit, const FitReport& report)
   *proto.mutable_clip() = ClipConventionToProto(report.clip);
   *proto.mutable_energies() = EnergiesToProto(matrix, fit);
   if (fit.wrong_share) *proto.mutable_foretold_wrong() = ForetoldToProto(fit);
-  proto.set_solver_report(matrix.solver_report);
+  proto.set_solver_report(matrix.search.solver_report);
   *proto.mutable_footprint() =
-      FootprintToProto(matrix.footprint, report.options.compute_statistics);
-  *proto.mutable_samples() = SampleCountsToProto(matrix.samples);
-  proto.set_stop_reason(StopReasonToProto(matrix.stop_reason));
-  proto.set_evaluations(matrix.evaluations);
-  for (const TraceStep& step : matrix.trace) {
+      FootprintToProto(matrix.figures.footprint, report.options.compute_statistics);
+  *proto.mutable_samples() = SampleCountsToProto(matrix.figures.samples);
+  proto.set_stop_reason(StopReasonToProto(matrix.search.stop_reason));
+  proto.set_evaluations(matrix.search.evaluations);
+  for (const TraceStep& step : matrix.search.trace) {
     v1::TraceStep& step_proto = *proto.add_trace();
     step_proto.set_station(std::string(step.station));
     step_proto.set_evaluations(step.evaluations);

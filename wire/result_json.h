@@ -5,17 +5,17 @@
 // Out:  v1::FitResult; a JSON text file, the same bytes for the same result.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "absl/types/optional.h"
 #include "geometry/camera.h"
 #include "geometry/clip.h"
 #include "geometry/light.h"
 #include "lightfit/v1/result.pb.h"
-#include "optimizer/figures/evaluate.h"
+#include "optimizer/evaluate.h"
 #include "optimizer/fit_options.h"
 #include "optimizer/light_matrix.h"
 #include "wire/matrix_proto.h"
@@ -26,10 +26,10 @@ namespace lightfit {
 struct LightFit {
   Light light;
   absl::StatusOr<LightMatrix> matrix = absl::UnknownError("not fitted");
-  absl::optional<double> wrong_share;          // of `matrix`, foretold: 0 ... 1
-  absl::optional<MatrixFigures> focused;       // of the usual focused map: Search::kFocused
-  absl::optional<MatrixFigures> as_published;  // of FitOptions::AsPublished()
-  absl::optional<double>
+  std::optional<double> wrong_share;    // of `matrix`, foretold: 0 ... 1
+  std::optional<Figures> focused;       // of the usual focused map: Search::kFocused
+  std::optional<Figures> as_published;  // of FitOptions::AsPublished()
+  std::optional<double>
       time_ms;  // only when asked for: results with times are never the same twice
 };
 

@@ -7,13 +7,13 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
-#include "absl/types/optional.h"
 #include "absl/types/span.h"
 #include "geometry/light.h"
 #include "optimizer/energy/summary_total.h"
@@ -30,7 +30,7 @@ struct LightSummary {
 
   // L1 metrics: the map in which the samples were weighed, as SummarizeInMap() takes it. Absent:
   // each frame's own best map.
-  absl::optional<Eigen::Matrix4d> weighed_in;
+  std::optional<Eigen::Matrix4d> weighed_in;
 
   const std::string& name() const { return total.light.name; }
   int64_t num_frames() const { return total.num_frames + num_frames_without; }

@@ -7,10 +7,10 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "absl/status/statusor.h"
-#include "absl/types/optional.h"
 #include "cli/flags/fit_flags.h"
 #include "optimizer/sizing/map_sizes.h"
 #include "optimizer/sizing/tolerance.h"
@@ -25,12 +25,12 @@ struct AllocateFlags {
   FitFlags fit;  // the read-back or summaries, the lights, the method, the output
 
   // One of the two.
-  absl::optional<int64_t> budget_texels;
-  absl::optional<Tolerance> tolerance;  // image_scale is set once the read-back is known
+  std::optional<int64_t> budget_texels;
+  std::optional<Tolerance> tolerance;  // image_scale is set once the read-back is known
 
   std::map<std::string, double> weights;  // by light name
   MapSizeRules rules;
-  absl::optional<MapSize> image;  // absent: the read-back's own pixels; not with summaries
+  std::optional<MapSize> image;  // absent: the read-back's own pixels; not with summaries
 };
 
 // Declares every option on `app`, to be parsed into `flags`, which must stay where it is.

@@ -5,11 +5,11 @@
 // Out:  CompareFlags.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "absl/types/optional.h"
 #include "cli/flags/fit_flags.h"
 #include "cli/flags/scene_flags.h"
 #include "jobs/compare/camera_step.h"
@@ -29,9 +29,9 @@ struct MatrixFlag {
 
 // Where crawl is measured to.
 struct CrawlFlags {
-  bool is_wanted = false;           // --crawl, or any of the others
-  absl::optional<int> next_frame;   // of the --camera scene file
-  absl::optional<CameraStep> step;  // absent: DefaultCameraStep()
+  bool is_wanted = false;          // --crawl, or any of the others
+  std::optional<int> next_frame;   // of the --camera scene file
+  std::optional<CameraStep> step;  // absent: DefaultCameraStep()
   std::string next_readback_path;
 };
 
@@ -43,7 +43,7 @@ struct CompareFlags {
   FitFlags fit;
 
   PixelSize screen = {750, 750};
-  absl::optional<PixelSize> readback;  // absent: DefaultReadbackSize()
+  std::optional<PixelSize> readback;  // absent: DefaultReadbackSize()
   MapSize map = {400, 400};
   std::vector<MatrixFlag> matrices;
   BiasOptions bias;  // constant_share only

@@ -5,11 +5,11 @@
 // Out:  FitFlags.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "absl/types/optional.h"
 #include "cli/flags/light_flags.h"
 #include "geometry/clip.h"
 #include "io/camera_exr.h"
@@ -34,7 +34,7 @@ struct FitFlags {
   bool as_published = false;
   ClipConvention clip = ClipConvention::Vulkan();
 
-  absl::optional<DepthKind> depth_kind;  // absent: the camera file's, or kCameraZ
+  std::optional<DepthKind> depth_kind;  // absent: the camera file's, or kCameraZ
   std::string depth_channel;
   std::string shadow_channel_format;
   std::string shadow_bits_channel;

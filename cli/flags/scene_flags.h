@@ -7,11 +7,11 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "absl/types/optional.h"
 #include "cli/flags/light_flags.h"
 #include "geometry/camera.h"
 #include "geometry/light.h"
@@ -31,12 +31,12 @@ struct ViewFlags {
 };
 
 struct SceneFlags {
-  std::string scene;                                // a path, or "generate..."
-  absl::optional<SceneGeneratorOptions> generator;  // present: `scene` is "generate..."
-  std::string camera;                               // as given; empty: none
-  absl::optional<ViewFlags> view;                   // absent: `camera` is a file
-  int frame = 0;                                    // of the camera file
-  Eigen::Vector3d up = Eigen::Vector3d::UnitY();    // of the view and of random lights
+  std::string scene;                               // a path, or "generate..."
+  std::optional<SceneGeneratorOptions> generator;  // present: `scene` is "generate..."
+  std::string camera;                              // as given; empty: none
+  std::optional<ViewFlags> view;                   // absent: `camera` is a file
+  int frame = 0;                                   // of the camera file
+  Eigen::Vector3d up = Eigen::Vector3d::UnitY();   // of the view and of random lights
   LightFlags lights;
   int num_random_lights = 0;
   uint64_t seed = 1;

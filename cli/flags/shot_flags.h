@@ -5,11 +5,11 @@
 // Out:  ShotFlags, and the job that they ask for.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "absl/types/optional.h"
 #include "cli/flags/fit_flags.h"
 #include "jobs/shot/job.h"
 
@@ -28,9 +28,9 @@ struct ShotFlags {
   bool per_frame = false, tracked = false, per_shot = false;  // none: all of them
 
   double stability = 0.5;  // 0 ... 1; what it stands for may be changed one by one:
-  absl::optional<double> replace_below;
-  absl::optional<int> update_every_frames;
-  absl::optional<double> cover_margin_percent;
+  std::optional<double> replace_below;
+  std::optional<int> update_every_frames;
+  std::optional<double> cover_margin_percent;
 
   int rounds = ShotJob().rounds;
   std::string output;  // a folder; empty: ShotFolder()

@@ -31,7 +31,7 @@ constexpr char kBudgetLegend[] =
 
 std::string EnergyText(const LightFit& fit, const AllocationEntry& entry) {
   if (!entry.equal_split_energy || !(*entry.equal_split_energy > 0.0)) return "-";
-  return FigureText(fit.matrix->energy / *entry.equal_split_energy);
+  return FigureText(fit.matrix->figures.energy / *entry.equal_split_energy);
 }
 
 // Summaries know the root mean square alone, and only of squares.
@@ -61,7 +61,7 @@ Table AllocationTable(const AllocationReport& report, double image_scale) {
       table.AddRow({fit.light.name, "no map, see below"});
       continue;
     }
-    const FootprintStatistics& footprint = fit.matrix->footprint;
+    const FootprintStatistics& footprint = fit.matrix->figures.footprint;
     const bool is_met = entry.reached.has_value() && entry.reached->is_met;
     std::vector<std::string> row = {fit.light.name,
                                     absl::StrCat(fit.matrix->map.width),
@@ -83,7 +83,7 @@ std::string TotalText(const AllocationReport& report) {
   for (size_t i = 0; i < report.entries.size(); ++i) {
     const AllocationEntry& entry = report.entries[i];
     if (!report.fit.lights[i].matrix.ok() || !entry.equal_split_energy) continue;
-    energy += entry.weight * report.fit.lights[i].matrix->energy;
+    energy += entry.weight * report.fit.lights[i].matrix->figures.energy;
     equal += entry.weight * *entry.equal_split_energy;
   }
   if (!(equal > 0.0)) return "";

@@ -40,7 +40,7 @@ constexpr char kTotalLegend[] =
     "lights\n"
     "without a matrix of the method.\n";
 
-std::string RatioText(const absl::optional<double>& ratio) {
+std::string RatioText(const std::optional<double>& ratio) {
   return ratio.has_value() ? absl::StrCat(FigureText(*ratio), "x") : "-";
 }
 
@@ -72,7 +72,7 @@ void AddCrawlColumns(bool has_truth, Table* table) {
   if (has_truth) table->AddColumn("crawl", "% flips");
 }
 
-void AppendCrawlCells(const absl::optional<MapCrawl>& crawl,
+void AppendCrawlCells(const std::optional<MapCrawl>& crawl,
                       bool has_truth,
                       std::vector<std::string>* cells) {
   const bool is_known = crawl.has_value();
@@ -83,7 +83,7 @@ void AppendCrawlCells(const absl::optional<MapCrawl>& crawl,
                        ? FigureText(crawl->points.edge_crawl_px)
                        : "-");
   if (!has_truth) return;
-  const absl::optional<double> flips = is_known ? IdealFlipShare(*crawl) : absl::nullopt;
+  const std::optional<double> flips = is_known ? IdealFlipShare(*crawl) : std::nullopt;
   cells->push_back(flips.has_value() ? PercentText(*flips) : "-");
 }
 
@@ -141,7 +141,7 @@ std::string LightText(const LightComparison& light, bool has_truth, bool has_cra
   return absl::StrCat(title, table.Text(), notes.Text());
 }
 
-void AppendPixelCells(const absl::optional<MethodTotals::Pixels>& pixels,
+void AppendPixelCells(const std::optional<MethodTotals::Pixels>& pixels,
                       std::vector<std::string>* cells) {
   if (!pixels.has_value()) return cells->insert(cells->end(), 4, "-"), void();
   cells->push_back(absl::StrCat(pixels->total));
@@ -179,7 +179,7 @@ std::string TotalsText(absl::Span<const LightComparison> lights, bool has_truth,
   return absl::StrCat(lights.size(), " lights\n\n", table.Text());
 }
 
-void AppendCsvCrawl(const absl::optional<MapCrawl>& crawl, std::string* csv) {
+void AppendCsvCrawl(const std::optional<MapCrawl>& crawl, std::string* csv) {
   if (crawl.has_value()) {
     absl::StrAppend(csv,
                     CsvNumber(crawl->points.phase_drift_texels),

@@ -15,17 +15,19 @@ constexpr char kLegend[] =
     "\nWrong: shadow pixels that will be wrong, foretold, of all pixels of the image, with the\n"
     "nearest texel and no fault of the bias. Fewer than: how many times fewer the final map has.\n"
     "Footprint: how far one texel reaches on the screen at the shadow edges, in read-back pixels;\n"
-    "below 1 is finer. Time: the final fit of that light alone.\n"
+    "below 1 is finer. Figures are over the shadow-edge pixels that a fit takes by default, whatever\n"
+    "this one took; the table below counts those it took. Time: the final fit of that light.\n"
     "Focused: the usual map around all that is visible. Published: Chong and Gortler's Algorithm "
     "1.\n";
 
-std::string RatioText(const absl::StatusOr<JudgedMatrix>& before, const MatrixFigures& after) {
-  if (!before.ok() || !(after.wrong_share > 0.0)) return "-";
-  return absl::StrCat(FigureText(before->figures.wrong_share / after.wrong_share), "x");
+std::string RatioText(const absl::StatusOr<JudgedMatrix>& before, const Figures& after) {
+  if (!before.ok() || !(after.wrong_share.value_or(0.0) > 0.0)) return "-";
+  return absl::StrCat(
+      FigureText(before->figures.wrong_share.value_or(0.0) / *after.wrong_share), "x");
 }
 
 std::string WrongText(const absl::StatusOr<JudgedMatrix>& map) {
-  return map.ok() ? PercentText(map->figures.wrong_share) : "-";
+  return map.ok() ? PercentText(map->figures.wrong_share.value_or(0.0)) : "-";
 }
 
 Table FigureTable(const std::vector<Comparison>& comparisons) {
@@ -46,7 +48,7 @@ Table FigureTable(const std::vector<Comparison>& comparisons) {
       table.AddRow({comparison.light.name, kNoMatrix});
       continue;
     }
-    const MatrixFigures& final = comparison.final->figures;
+    const Figures& final = comparison.final->figures;
     const bool has_focused = comparison.focused.ok();
     table.AddRow({comparison.light.name,
                   WrongText(comparison.focused),
@@ -77,7 +79,7 @@ Table SampleTable(const std::vector<Comparison>& comparisons) {
       table.AddRow({comparison.light.name, kNoMatrix});
       continue;
     }
-    const SampleCounts& counts = comparison.final->matrix.samples;
+    const SampleCounts& counts = comparison.final->matrix.figures.samples;
     table.AddRow({comparison.light.name,
                   absl::StrCat(counts.candidates),
                   absl::StrCat(counts.used),

@@ -23,7 +23,7 @@ constexpr char kLegend[] =
     "0.41 is drawn anew. Edge crawl: that drift on the screen, across shadow edges. Wrong: shadow\n"
     "pixels that will be wrong, foretold, of all pixels.\n";
 
-std::string FigureOrDash(const absl::optional<double>& value) {
+std::string FigureOrDash(const std::optional<double>& value) {
   return value.has_value() ? FigureText(*value) : "-";
 }
 
@@ -51,7 +51,7 @@ Table TotalsTable(const ShotContext& context) {
   table.AddColumn("phase drift", "texels");
   table.AddColumn("edge crawl", "pixels");
   table.AddColumn("wrong", "% of the image");
-  const auto add = [&](const std::string& name, absl::optional<size_t> light) {
+  const auto add = [&](const std::string& name, std::optional<size_t> light) {
     table.AddRow({name});
     for (const ShotMode mode : kShotModes) {
       if (!job.Has(mode)) continue;
@@ -60,7 +60,7 @@ Table TotalsTable(const ShotContext& context) {
     }
   };
   for (size_t i = 0; i < job.lights.size(); ++i) add(job.lights[i].name, i);
-  if (job.lights.size() > 1) add("all lights", absl::nullopt);
+  if (job.lights.size() > 1) add("all lights", std::nullopt);
   return table;
 }
 

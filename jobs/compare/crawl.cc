@@ -58,8 +58,8 @@ bool SeesAnythingTwice(const NextFrame& next) {
          std::any_of(next.seen.begin(), next.seen.end(), [](uint8_t seen) { return seen != 0; });
 }
 
-absl::optional<double> IdealFlipShare(const MapCrawl& crawl) {
-  if (!crawl.flicker.has_value() || crawl.flicker->judged == 0) return absl::nullopt;
+std::optional<double> IdealFlipShare(const MapCrawl& crawl) {
+  if (!crawl.flicker.has_value() || crawl.flicker->judged == 0) return std::nullopt;
   return static_cast<double>(crawl.flicker->flips_ideal) /
          static_cast<double>(crawl.flicker->judged);
 }
@@ -72,7 +72,10 @@ absl::StatusOr<MapCrawl> MeasureMapCrawl(const PresentMap& present,
                                          const BiasOptions& bias) {
   const absl::StatusOr<Crawl> points =
       MeasureCrawl({present.frame.readback, present.map_from_world, map},
-                   {next_frame.readback, next_map_from_world, map},
+                   {next_frame.readback,
+                    next_map_from_world,
+                    map,
+                    next_frame.surfaces->ok() ? &**next_frame.surfaces : nullptr},
                    next_frame.light);
   if (!points.ok()) return points.status();
   MapCrawl crawl;
@@ -91,8 +94,8 @@ absl::StatusOr<MapCrawl> MeasureMapCrawl(const PresentMap& present,
   return crawl;
 }
 
-absl::optional<MapCrawl> PooledCrawl(absl::Span<const MapCrawl> crawls) {
-  if (crawls.empty()) return absl::nullopt;
+std::optional<MapCrawl> PooledCrawl(absl::Span<const MapCrawl> crawls) {
+  if (crawls.empty()) return std::nullopt;
   MapCrawl sum;
   for (const MapCrawl& crawl : crawls) Pool(crawl, &sum);
   return sum;

@@ -7,10 +7,10 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "absl/types/optional.h"
 #include "absl/types/span.h"
 #include "geometry/map_size.h"
 #include "jobs/compare/stage.h"
@@ -35,12 +35,12 @@ absl::StatusOr<NextFrame> MakeNextFrame(const CompareStage& present, CompareStag
 bool SeesAnythingTwice(const NextFrame& next);
 
 struct MapCrawl {
-  Crawl points;                     // of the read-backs
-  absl::optional<Flicker> flicker;  // of the screen; absent without truth
+  Crawl points;                    // of the read-backs
+  std::optional<Flicker> flicker;  // of the screen; absent without truth
 };
 
 // Of the pixels seen in both frames; absent without truth or without such pixels.
-absl::optional<double> IdealFlipShare(const MapCrawl& crawl);
+std::optional<double> IdealFlipShare(const MapCrawl& crawl);
 
 // A light in the present frame, and a map of it with its shadows there (empty without truth).
 struct PresentMap {
@@ -59,6 +59,6 @@ absl::StatusOr<MapCrawl> MeasureMapCrawl(const PresentMap& present,
                                          const BiasOptions& bias);
 
 // As if all points, and all pixels, were one light's. Nothing from nothing.
-absl::optional<MapCrawl> PooledCrawl(absl::Span<const MapCrawl> crawls);
+std::optional<MapCrawl> PooledCrawl(absl::Span<const MapCrawl> crawls);
 
 }  // namespace lightfit

@@ -32,11 +32,11 @@ v1::Crawl MapCrawlToProto(const MapCrawl& crawl) {
 }
 
 void SetRatios(const ComparedMap& map, const ComparedMap& lightfit, v1::MethodComparison* proto) {
-  const absl::optional<double> energy = EnergyRatio(map, lightfit);
+  const std::optional<double> energy = EnergyRatio(map, lightfit);
   if (energy.has_value()) proto->set_energy_ratio(*energy);
-  const absl::optional<double> ideal = WrongRatio(map, lightfit, &WrongPixels::ideal);
+  const std::optional<double> ideal = WrongRatio(map, lightfit, &WrongPixels::ideal);
   if (ideal.has_value()) proto->set_ideal_ratio(*ideal);
-  const absl::optional<double> practical = WrongRatio(map, lightfit, &WrongPixels::practical);
+  const std::optional<double> practical = WrongRatio(map, lightfit, &WrongPixels::practical);
   if (practical.has_value()) proto->set_practical_ratio(*practical);
 }
 

@@ -8,68 +8,35 @@
 #include "geometry/homography.h"
 #include "jobs/fit_comparison.h"
 #include "methods/method.h"
-#include "optimizer/energy/footprint.h"
 #include "optimizer/figures/foretell.h"
 #include "optimizer/fit.h"
-#include "optimizer/readback/cover.h"
-#include "optimizer/readback/samples.h"
-#include "optimizer/readback/surfaces.h"
 
 namespace lightfit {
 namespace {
-
-// One light's samples, in coordinates that keep precision however far the light is.
-struct Yardstick {
-  Eigen::Matrix3d normalized_from_ray = Eigen::Matrix3d::Identity();
-  Samples samples;
-};
-
-absl::StatusOr<Yardstick> MakeYardstick(const Readback& readback,
-                                        const Light& light,
-                                        const SampleOptions& options) {
-  const absl::StatusOr<Receivers> receivers =
-      FindReceivers(readback, uint32_t{1} << light.shadow_bit, options);
-  if (!receivers.ok()) return receivers.status();
-  Yardstick yardstick;
-  // No cover, as when receivers surround the light: light space will do.
-  const absl::StatusOr<RayCover> cover = CoverReceivers(*receivers, light);
-  if (cover.ok()) yardstick.normalized_from_ray = cover->normalized_from_ray;
-  yardstick.samples =
-      SelectSamples(*receivers, light, yardstick.normalized_from_ray, /*with_edge_normals=*/false);
-  return yardstick;
-}
 
 void AddNote(const std::string& note, ComparedMap* row) {
   row->note += (row->note.empty() ? "" : "; ") + note;
 }
 
 // Sets the figures, or the note that says why there are none.
-void Measure(const Yardstick& yardstick, const Eigen::Matrix3d& map_from_ray, ComparedMap* row) {
-  const Samples& samples = yardstick.samples;
-  if (samples.size() == 0) return AddNote("no shadow edge in the read-back to measure by", row);
-  const Eigen::Matrix3d map_from_normalized =
-      map_from_ray * yardstick.normalized_from_ray.inverse();
-  const Eigen::Vector3d axis = map_from_normalized.row(2);
-  int64_t num_behind = 0;
-  double total_weight = 0.0;
-  for (size_t i = 0; i < samples.size(); ++i) {
-    if (!(axis.dot(samples.At(i).X) > 0.0)) ++num_behind;
-    total_weight += samples.weight[i];
+void Measure(const LightView& view, const Eigen::Matrix3d& map_from_ray, ComparedMap* row) {
+  if (view.samples.size() == 0) {
+    return AddNote("no shadow edge in the read-back to measure by", row);
   }
-  if (num_behind > 0) {
+  const Eigen::Matrix3d map_from_normalized = map_from_ray * view.normalized_from_ray().inverse();
+  Figures figures =
+      MeasureFigures(view.samples, map_from_normalized, Metric::kL2, /*along_edge_share=*/1.0);
+  if (figures.footprint.num_behind > 0) {
     return AddNote(
         absl::StrFormat("no energy: w <= 0 at %d of %d samples, which the map cannot show",
-                        num_behind,
-                        samples.size()),
+                        figures.footprint.num_behind,
+                        view.samples.size()),
         row);
   }
-  MapFigures figures;
-  figures.footprint = ComputeFootprintStatistics(map_from_normalized, samples);
-  figures.energy = 2.0 * total_weight * figures.footprint.rms * figures.footprint.rms;
   if (!std::isfinite(figures.energy) || !std::isfinite(figures.footprint.worst)) {
     return AddNote("no energy: the matrix is singular at the samples", row);
   }
-  row->figures = figures;
+  row->figures = std::move(figures);
 }
 
 // How a method gets its matrix from what is known of one frame.
@@ -86,7 +53,10 @@ SetUp SetUpOf(Method method, MapSize map) {
 
 SetUp SetUpOf(const FitOptions& options, MapSize map) {
   return [options, map](const LitStage& frame) -> absl::StatusOr<MethodMap> {
-    const absl::StatusOr<LightMatrix> fit = FitLight(frame.readback, frame.light, map, options);
+    if (!frame.surfaces->ok()) return frame.surfaces->status();
+    const absl::StatusOr<LightView> view = ViewLight(**frame.surfaces, frame.light, options);
+    if (!view.ok()) return view.status();
+    const absl::StatusOr<LightMatrix> fit = FitLight(*view, map, options);
     if (!fit.ok()) return fit.status();
     return MethodMap{fit->map_from_world, ""};
   };
@@ -104,10 +74,10 @@ SetUp SetUpOf(const GivenMatrices& given) {
 class RowMaker {
  public:
   RowMaker(const LitStage& frame,
-           const absl::StatusOr<Yardstick>& yardstick,
+           const absl::StatusOr<LightView>& view,
            const CompareOptions& options,
            LightComparison* comparison)
-      : frame_(frame), yardstick_(yardstick), options_(options), comparison_(comparison) {
+      : frame_(frame), view_(view), options_(options), comparison_(comparison) {
     if (options.next != nullptr) next_frame_ = Lit(options.next->stage, comparison->light);
   }
 
@@ -132,7 +102,7 @@ class RowMaker {
     const absl::StatusOr<Eigen::Matrix3d> map_from_ray = MapFromRay(map->map_from_world, light);
     if (!map_from_ray.ok()) return map_from_ray.status();
     row->map_from_world = map->map_from_world;
-    if (yardstick_.ok()) Measure(*yardstick_, *map_from_ray, row);
+    if (view_.ok()) Measure(*view_, *map_from_ray, row);
     const absl::StatusOr<double> foretold =
         ForetellWrongShare(frame_.readback, light, row->map_from_world, options_.map);
     if (foretold.ok()) row->foretold = *foretold;
@@ -171,7 +141,7 @@ class RowMaker {
 
   const LitStage& frame_;
   LitStage next_frame_;
-  const absl::StatusOr<Yardstick>& yardstick_;
+  const absl::StatusOr<LightView>& view_;
   const CompareOptions& options_;
   LightComparison* comparison_;
 };
@@ -216,11 +186,13 @@ LightComparison CompareMaps(const CompareStage& stage,
     comparison.lighting = CountLighting(comparison.truth);
   }
   const LitStage frame = Lit(stage, light);
-  const absl::StatusOr<Yardstick> yardstick =
-      MakeYardstick(frame.readback, frame.light, FitOptions::AsPublished().samples);
-  if (yardstick.ok()) comparison.samples = yardstick->samples.counts;
+  const absl::StatusOr<LightView> view =
+      frame.surfaces->ok()
+          ? ViewLight(**frame.surfaces, frame.light, FigureOptions(options.fit))
+          : absl::StatusOr<LightView>(frame.surfaces->status());
+  if (view.ok()) comparison.samples = view->samples.counts;
 
-  RowMaker rows(frame, yardstick, options, &comparison);
+  RowMaker rows(frame, view, options, &comparison);
   const MapSize map = options.map;
   for (const Method method : AllMethods()) rows.Add(MethodName(method), SetUpOf(method, map));
   rows.Add(kAsPublishedName, SetUpOf(PublishedOptions(options.fit), map));

@@ -13,17 +13,18 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "absl/types/optional.h"
 #include "geometry/light.h"
 #include "geometry/map_size.h"
 #include "io/given_matrices.h"
 #include "jobs/compare/crawl.h"
 #include "jobs/compare/stage.h"
+#include "optimizer/figures/figures.h"
 #include "optimizer/fit_options.h"
 #include "optimizer/light_matrix.h"
 #include "render/judge.h"
@@ -51,30 +52,25 @@ struct CompareOptions {
   std::function<void(const std::string&)> before_row;
 };
 
-// Chong and Gortler's energy, math.md (3), whatever was minimised: of squared footprints, over the
-// samples of the read-back that FitOptions::AsPublished() takes.
-struct MapFigures {
-  double energy = 0.0;
-  FootprintStatistics footprint;
-};
-
 struct ComparedMap {
   std::string name;
   absl::Status status;  // why there is no matrix, or why it cannot be used for this light
   std::string note;     // empty, or how the method fell back, or why `figures` are absent
   Eigen::Matrix4d map_from_world = Eigen::Matrix4d::Identity();  // texels of CompareOptions::map
 
-  absl::optional<MapFigures> figures;  // absent: no samples, or w <= 0 at some of them
-  absl::optional<WrongPixels> wrong;   // absent without truth
-  absl::optional<double> foretold;     // share of wrong pixels foretold from the read-back
-  absl::optional<MapCrawl> crawl;      // to CompareOptions::next; absent: `note` says why
-  ShadowImage image;                   // CompareOptions::keep_images
+  // Over the samples that every table is over (FigureOptions()). The energy is Chong and Gortler's,
+  // math.md (3), squared footprints, whatever was minimised. Absent: no samples, or w <= 0 at some.
+  std::optional<Figures> figures;
+  std::optional<WrongPixels> wrong;  // absent without truth
+  std::optional<double> foretold;    // share of wrong pixels foretold from the read-back
+  std::optional<MapCrawl> crawl;     // to CompareOptions::next; absent: `note` says why
+  ShadowImage image;                 // CompareOptions::keep_images
 };
 
 struct LightComparison {
   Light light;
   LightingCounts lighting;  // of the screen; zeros without truth
-  SampleCounts samples;     // of the read-back, that energies are measured by
+  SampleCounts samples;     // of the read-back, that figures are over
   std::vector<ComparedMap> maps;
   std::vector<Lighting> truth;  // CompareOptions::keep_images
 

@@ -129,6 +129,8 @@ absl::StatusOr<CompareStage> MakeStage(const Readback& readback) {
   }
   SetClipPlanes(nearest, furthest, &stage.view.camera);
   SetPlane(SurfacesOf(readback), &stage.view);
+  stage.surfaces =
+      std::make_shared<const absl::StatusOr<Surfaces>>(FindSurfaces(readback, ~0u, {}));
   return stage;
 }
 
@@ -137,6 +139,7 @@ LitStage Lit(const CompareStage& stage, const Light& light) {
   lit.stage = &stage;
   lit.light = light;
   lit.readback = stage.readback;
+  lit.surfaces = stage.surfaces;
   if (!stage.has_truth()) return lit;
   lit.light.shadow_bit = 0;
   for (const Lighting lighting : TrueLighting(*stage.caster, stage.readback_surfaces, light)) {
@@ -144,6 +147,8 @@ LitStage Lit(const CompareStage& stage, const Light& light) {
   }
   lit.readback.depth = stage.readback_depth;
   lit.readback.shadow_bits = lit.shadow_bits;
+  lit.surfaces =
+      std::make_shared<const absl::StatusOr<Surfaces>>(FindSurfaces(lit.readback, 1u, {}));
   return lit;
 }
 

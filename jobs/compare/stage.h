@@ -6,11 +6,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "methods/method.h"
 #include "optimizer/readback/readback.h"
+#include "optimizer/readback/surfaces.h"
 #include "render/ray_caster.h"
 #include "render/surface_image.h"
 
@@ -32,6 +34,9 @@ struct CompareStage {
   // it sees.
   MethodInput view;
 
+  // Without a caster: of the read-back, for all its lights. Never null then.
+  std::shared_ptr<const absl::StatusOr<Surfaces>> surfaces;
+
   bool has_truth() const { return caster != nullptr; }
 };
 
@@ -51,9 +56,10 @@ struct LitStage {
   Light light;                        // with a caster its shadow bit is 0, whatever it was
   std::vector<uint32_t> shadow_bits;  // with a caster: of the read-back
   Readback readback;
+  std::shared_ptr<const absl::StatusOr<Surfaces>> surfaces;  // of `readback`; never null
 };
 
-// With a caster the read-back's shadow is cast.
+// With a caster the read-back's shadow is cast, and its surfaces found.
 LitStage Lit(const CompareStage& stage, const Light& light);
 
 }  // namespace lightfit

@@ -17,8 +17,8 @@ class PixelSum {
     if (wrong < lightfit_wrong) ++pixels_.num_wins;
   }
 
-  absl::optional<MethodTotals::Pixels> Result() const {
-    if (num_lights_ == 0) return absl::nullopt;
+  std::optional<MethodTotals::Pixels> Result() const {
+    if (num_lights_ == 0) return std::nullopt;
     MethodTotals::Pixels pixels = pixels_;
     pixels.ratio =
         RatioOf(static_cast<double>(pixels.total), static_cast<double>(pixels.lightfit_total));
@@ -67,21 +67,21 @@ MethodTotals TotalsOfRow(absl::Span<const LightComparison> lights, size_t row) {
 
 }  // namespace
 
-absl::optional<double> RatioOf(double value, double lightfit_value) {
-  if (!(lightfit_value > 0.0)) return absl::nullopt;
+std::optional<double> RatioOf(double value, double lightfit_value) {
+  if (!(lightfit_value > 0.0)) return std::nullopt;
   return value / lightfit_value;
 }
 
-absl::optional<double> WrongRatio(const ComparedMap& map,
-                                  const ComparedMap& lightfit,
-                                  int64_t WrongPixels::*kind) {
-  if (!map.wrong.has_value() || !lightfit.wrong.has_value()) return absl::nullopt;
+std::optional<double> WrongRatio(const ComparedMap& map,
+                                 const ComparedMap& lightfit,
+                                 int64_t WrongPixels::*kind) {
+  if (!map.wrong.has_value() || !lightfit.wrong.has_value()) return std::nullopt;
   return RatioOf(static_cast<double>((*map.wrong).*kind),
                  static_cast<double>((*lightfit.wrong).*kind));
 }
 
-absl::optional<double> EnergyRatio(const ComparedMap& map, const ComparedMap& lightfit) {
-  if (!map.figures.has_value() || !lightfit.figures.has_value()) return absl::nullopt;
+std::optional<double> EnergyRatio(const ComparedMap& map, const ComparedMap& lightfit) {
+  if (!map.figures.has_value() || !lightfit.figures.has_value()) return std::nullopt;
   return RatioOf(map.figures->energy, lightfit.figures->energy);
 }
 

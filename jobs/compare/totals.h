@@ -6,23 +6,23 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "absl/types/optional.h"
 #include "absl/types/span.h"
 #include "jobs/compare/rows.h"
 
 namespace lightfit {
 
 // How many times as many: this method's over lightfit's. Absent where lightfit's is 0.
-absl::optional<double> RatioOf(double value, double lightfit_value);
+std::optional<double> RatioOf(double value, double lightfit_value);
 
 // Of one kind of wrong pixels, and of energies; absent also where either row has none.
-absl::optional<double> WrongRatio(const ComparedMap& map,
-                                  const ComparedMap& lightfit,
-                                  int64_t WrongPixels::*kind);
-absl::optional<double> EnergyRatio(const ComparedMap& map, const ComparedMap& lightfit);
+std::optional<double> WrongRatio(const ComparedMap& map,
+                                 const ComparedMap& lightfit,
+                                 int64_t WrongPixels::*kind);
+std::optional<double> EnergyRatio(const ComparedMap& map, const ComparedMap& lightfit);
 
 struct MethodTotals {
   std::string name;
@@ -33,7 +33,7 @@ struct MethodTotals {
   struct Pixels {
     int64_t total = 0;
     int64_t lightfit_total = 0;
-    absl::optional<double> ratio;  // of the totals
+    std::optional<double> ratio;  // of the totals
 
     // Geometric mean over the lights of (wrong + 1) / (lightfit's wrong + 1): every light counts
     // the same, and none of them divides by zero.
@@ -41,14 +41,14 @@ struct MethodTotals {
 
     int num_wins = 0;  // lights with fewer wrong pixels than lightfit
   };
-  absl::optional<Pixels> ideal, practical;
+  std::optional<Pixels> ideal, practical;
 
   // Geometric mean of the ratios of energies over `num_energy_lights`; absent when that is 0.
-  absl::optional<double> mean_energy_ratio;
+  std::optional<double> mean_energy_ratio;
   int num_energy_lights = 0;
 
   // Over the lights for which both have it, PooledCrawl(); absent where there are none.
-  absl::optional<MapCrawl> crawl;
+  std::optional<MapCrawl> crawl;
   int num_crawl_lights = 0;
 };
 

@@ -16,7 +16,7 @@ constexpr char kNames[] =
 std::string Line(const ShotJob& job, const ShotRows& rows, const ShotRow& row) {
   const ShotFrame& frame = job.frames[row.frame];
   const bool ok = row.error.empty();
-  absl::optional<double> energy, rms, median, p99, wrong, drift, edge_crawl;
+  std::optional<double> energy, rms, median, p99, wrong, drift, edge_crawl;
   if (ok) {
     energy = row.energy;
     rms = row.footprint.rms;

@@ -3,33 +3,30 @@
 #include <utility>
 
 #include "base/text_file.h"
-#include "optimizer/figures/evaluate.h"
+#include "optimizer/evaluate.h"
+#include "optimizer/fit.h"
 
 namespace lightfit {
 namespace {
 
 absl::StatusOr<ShotFit> JudgeFit(const ShotJob& job,
-                                 const Light& light,
-                                 const Readback& readback,
+                                 const LightView& view,
                                  const TrackedMatrix& tracked,
                                  const ReadbackFile* file_before,
-                                 const absl::optional<Eigen::Matrix4d>& map_before) {
+                                 const std::optional<Eigen::Matrix4d>& map_before) {
   ShotFit fit;
   fit.tracked = tracked;
   LightMatrix& matrix = fit.tracked.matrix;
-  const absl::StatusOr<MatrixFigures> figures =
-      EvaluateMatrix(readback, light, matrix.map_from_world, matrix.map, job.fit());
+  absl::StatusOr<Figures> figures =
+      EvaluateMatrix(view, matrix.map_from_world, matrix.map, job.fit());
   if (!figures.ok()) return figures.status();
-  matrix.energy = figures->energy;
-  matrix.footprint = figures->footprint;
-  matrix.samples = figures->samples;
-  fit.wrong_share = figures->wrong_share;
+  matrix.figures = *std::move(figures);
   if (file_before == nullptr || !map_before.has_value()) return fit;
-  const Readback readback_before = file_before->View();
-  const absl::StatusOr<Crawl> crawl = MeasureCrawl({readback_before, *map_before, job.map},
-                                                   {readback, matrix.map_from_world, matrix.map},
-                                                   light,
-                                                   job.fit().samples);
+  const absl::StatusOr<Crawl> crawl =
+      MeasureCrawl({file_before->View(), *map_before, job.map},
+                   {view.surfaces->readback, matrix.map_from_world, matrix.map, view.surfaces},
+                   *view.light,
+                   job.fit().samples);
   if (!crawl.ok()) return crawl.status();
   fit.crawl = *crawl;
   return fit;
@@ -44,6 +41,18 @@ absl::StatusOr<ReadbackFile> ReadFrame(const ShotFrame& frame, absl::Span<const 
   const absl::Status status = InFile(frame.path, ValidateReadback(file->View()));
   if (!status.ok()) return status;
   return file;
+}
+
+absl::StatusOr<Surfaces> SurfacesOf(const ShotJob& job, const absl::StatusOr<ReadbackFile>& file) {
+  if (!file.ok()) return file.status();
+  return FindSurfaces(file->View(), LightMask(job.lights), job.fit().samples);
+}
+
+absl::StatusOr<LightView> ViewIn(const ShotJob& job,
+                                 const absl::StatusOr<Surfaces>& surfaces,
+                                 size_t light) {
+  if (!surfaces.ok()) return surfaces.status();
+  return ViewLight(*surfaces, job.lights[light], job.fit());
 }
 
 TrackedMatrices FitReadable(absl::Span<const Light> lights,
@@ -91,6 +100,7 @@ LightMaps MapsOf(const ShotJob& job, const v1::FitResult& result) {
 std::vector<absl::StatusOr<ShotFit>> JudgeFits(
     const ShotJob& job,
     const absl::StatusOr<ReadbackFile>& file,
+    const absl::StatusOr<Surfaces>& surfaces,
     absl::Span<const absl::StatusOr<TrackedMatrix>> matrices,
     const FrameBefore& before) {
   std::vector<absl::StatusOr<ShotFit>> fits;
@@ -99,13 +109,17 @@ std::vector<absl::StatusOr<ShotFit>> JudgeFits(
       fits.emplace_back(matrices[i].status());
       continue;
     }
+    const absl::StatusOr<LightView> view = ViewIn(job, surfaces, i);
+    if (!view.ok()) {
+      fits.emplace_back(view.status());
+      continue;
+    }
     const bool has_before = before.file != nullptr && before.file->light_status[i].ok();
     fits.push_back(JudgeFit(job,
-                            job.lights[i],
-                            file->View(),
+                            *view,
                             *matrices[i],
                             has_before ? before.file : nullptr,
-                            has_before ? before.maps[i] : absl::nullopt));
+                            has_before ? before.maps[i] : std::nullopt));
   }
   return fits;
 }

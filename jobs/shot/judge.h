@@ -6,19 +6,27 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "absl/types/optional.h"
 #include "absl/types/span.h"
 #include "jobs/shot/result.h"
+#include "optimizer/light_view.h"
 
 namespace lightfit {
 
-using LightMaps = std::vector<absl::optional<Eigen::Matrix4d>>;  // map_from_world, by light
+using LightMaps = std::vector<std::optional<Eigen::Matrix4d>>;  // map_from_world, by light
 
 // Reads and checks the frame.
 absl::StatusOr<ReadbackFile> ReadFrame(const ShotFrame& frame, absl::Span<const Light> lights);
+
+// What the frame says of all the job's lights, found once for whatever is asked of it. Refers to
+// the file's buffers.
+absl::StatusOr<Surfaces> SurfacesOf(const ShotJob& job, const absl::StatusOr<ReadbackFile>& file);
+absl::StatusOr<LightView> ViewIn(const ShotJob& job,
+                                 const absl::StatusOr<Surfaces>& surfaces,
+                                 size_t light);
 
 // Calls `fit` for the lights that the file has a shadow of. The others get their own status, and
 // all that of a file which could not be read.
@@ -39,6 +47,7 @@ struct FrameBefore {
 std::vector<absl::StatusOr<ShotFit>> JudgeFits(
     const ShotJob& job,
     const absl::StatusOr<ReadbackFile>& file,
+    const absl::StatusOr<Surfaces>& surfaces,
     absl::Span<const absl::StatusOr<TrackedMatrix>> matrices,
     const FrameBefore& before);
 

@@ -21,6 +21,7 @@ namespace {
 struct FrameWork {
   size_t frame = 0;
   absl::StatusOr<ReadbackFile> file = absl::UnknownError("not read");
+  absl::StatusOr<Surfaces> surfaces = absl::UnknownError("not read");  // of the file
 
   struct Mode {
     TrackedMatrices matrices;
@@ -94,12 +95,13 @@ class FramePipeline {
     if (MustReadFrame(context_, frame)) {
       work->file = ReadFrame(job_.frames[frame], job_.lights);
       context_.frame_status[frame] = work->file.status();
+      work->surfaces = SurfacesOf(job_, work->file);
     }
     if (IsMissing(ShotMode::kPerFrame, frame)) {
       work->per_frame.matrices =
           FitReadable(job_.lights, work->file, [&](absl::Span<const Light> lights) {
             TrackedMatrices fits;
-            for (auto& matrix : FitLights(work->file->View(), lights, job_.map, job_.fit())) {
+            for (auto& matrix : FitAll(work->surfaces, lights)) {
               if (matrix.ok()) {
                 fits.emplace_back(TrackedMatrix{*std::move(matrix), TrackerAction::kReplaced, 0});
               } else {
@@ -111,6 +113,11 @@ class FramePipeline {
       work->per_frame.maps = MapsOf(work->per_frame.matrices);
     }
     if (NeedsSummary(context_, frame)) Summarise(*work);
+  }
+
+  LightMatrices FitAll(const absl::StatusOr<Surfaces>& surfaces, absl::Span<const Light> lights) {
+    if (!surfaces.ok()) return LightMatrices(lights.size(), surfaces.status());
+    return FitLights(*surfaces, lights, job_.map, job_.fit());
   }
 
   void LoadDone(ShotMode mode, size_t frame, FrameWork::Mode* part) {
@@ -138,9 +145,10 @@ class FramePipeline {
       std::vector<LightSummary> lights;
       for (size_t i = 0; i < job_.lights.size(); ++i) {
         const absl::Status& status = work.file->light_status[i];
+        const absl::StatusOr<LightView> view =
+            status.ok() ? ViewIn(job_, work.surfaces, i) : absl::StatusOr<LightView>(status);
         const absl::StatusOr<Summary> summary =
-            status.ok() ? Summarize(work.file->View(), job_.lights[i], job_.fit())
-                        : absl::StatusOr<Summary>(status);
+            view.ok() ? Summarize(*view, job_.fit()) : absl::StatusOr<Summary>(view.status());
         lights.push_back(SummaryOfFrame(job_.lights[i], summary, frame.name, job_.fit()));
       }
       set = MakeSummarySet(job_.fit(), std::move(lights));
@@ -171,7 +179,8 @@ class FramePipeline {
       return;
     }
     tracked.matrices = FitReadable(job_.lights, work->file, [&](absl::Span<const Light> lights) {
-      return tracker_.Update(work->file->View(), lights, job_.map);
+      return work->surfaces.ok() ? tracker_.Update(*work->surfaces, lights, job_.map)
+                                 : TrackedMatrices(lights.size(), work->surfaces.status());
     });
     tracked.maps = MapsOf(tracked.matrices);
     tracked.states = tracker_.state();
@@ -194,7 +203,7 @@ class FramePipeline {
     }
     const FrameWork::Mode& own = work->*part;
     const std::vector<absl::StatusOr<ShotFit>> fits =
-        JudgeFits(job_, work->file, own.matrices, before);
+        JudgeFits(job_, work->file, work->surfaces, own.matrices, before);
     context_.WriteResult(mode,
                          work->frame,
                          ShotResultToProto(job_,

@@ -36,7 +36,7 @@ FitReport ReportOf(const ShotJob& job,
     fit.light = job.lights[light];
     if (fits[light].ok()) {
       fit.matrix = fits[light]->tracked.matrix;
-      fit.wrong_share = fits[light]->wrong_share;
+      fit.wrong_share = fit.matrix->figures.wrong_share;
     } else {
       fit.matrix = fits[light].status();
     }

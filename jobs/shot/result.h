@@ -7,11 +7,11 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "absl/types/optional.h"
 #include "absl/types/span.h"
 #include "io/readback_exr.h"
 #include "jobs/shot/job.h"
@@ -22,9 +22,8 @@
 namespace lightfit {
 
 struct ShotFit {
-  TrackedMatrix tracked;
-  double wrong_share = 0.0;     // foretold, 0 ... 1
-  absl::optional<Crawl> crawl;  // against the frame before, where both have a matrix
+  TrackedMatrix tracked;       // with foretold wrong pixels among its figures
+  std::optional<Crawl> crawl;  // against the frame before, where both have a matrix
 };
 
 // `fits[l]` belongs to job.lights[l]; `readback` is null when the frame could not be read, and then
@@ -48,7 +47,7 @@ struct ShotRow {
   double energy = 0.0;
   FootprintStatistics footprint;  // read-back pixels per texel
   double wrong_share = 0.0;       // foretold, 0 ... 1
-  absl::optional<Crawl> crawl;
+  std::optional<Crawl> crawl;
 };
 
 // By mode, frame and light; modes that were not asked for have frames without rows.

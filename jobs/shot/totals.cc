@@ -11,8 +11,8 @@ class Mean {
     sum_ += value;
     ++count_;
   }
-  absl::optional<double> Value() const {
-    if (count_ == 0) return absl::nullopt;
+  std::optional<double> Value() const {
+    if (count_ == 0) return std::nullopt;
     return sum_ / count_;
   }
 
@@ -23,16 +23,16 @@ class Mean {
 
 }  // namespace
 
-absl::optional<double> EnergyRatio(const ShotRows& rows, const ShotRow& row) {
+std::optional<double> EnergyRatio(const ShotRows& rows, const ShotRow& row) {
   const auto& frame = rows[static_cast<size_t>(ShotMode::kPerFrame)][row.frame];
-  if (row.light >= frame.size()) return absl::nullopt;
+  if (row.light >= frame.size()) return std::nullopt;
   const ShotRow& best = frame[row.light];
-  if (!row.error.empty() || !best.error.empty()) return absl::nullopt;
-  if (!(row.energy > 0.0) || !(best.energy > 0.0)) return absl::nullopt;
+  if (!row.error.empty() || !best.error.empty()) return std::nullopt;
+  if (!(row.energy > 0.0) || !(best.energy > 0.0)) return std::nullopt;
   return row.energy / best.energy;
 }
 
-ShotTotals TotalsOf(const ShotRows& rows, ShotMode mode, absl::optional<size_t> light) {
+ShotTotals TotalsOf(const ShotRows& rows, ShotMode mode, std::optional<size_t> light) {
   ShotTotals totals;
   Mean log_ratio, drift, edge_crawl, wrong;
   for (const std::vector<ShotRow>& frame : rows[static_cast<size_t>(mode)]) {
@@ -45,7 +45,7 @@ ShotTotals TotalsOf(const ShotRows& rows, ShotMode mode, absl::optional<size_t> 
       ++totals.num_frames;
       totals.num_updates += row.moved ? 1 : 0;
       wrong.Add(row.wrong_share);
-      if (const absl::optional<double> ratio = EnergyRatio(rows, row)) {
+      if (const std::optional<double> ratio = EnergyRatio(rows, row)) {
         log_ratio.Add(std::log(*ratio));
       }
       if (!row.crawl.has_value()) continue;

@@ -5,13 +5,14 @@
 // Out:  ShotTotals; the energy of one row beside that of the frame's own best matrix.
 #pragma once
 
-#include "absl/types/optional.h"
+#include <optional>
+
 #include "jobs/shot/result.h"
 
 namespace lightfit {
 
 // Energy over that of the per-frame matrix of the same frame and light. Absent without either.
-absl::optional<double> EnergyRatio(const ShotRows& rows, const ShotRow& row);
+std::optional<double> EnergyRatio(const ShotRows& rows, const ShotRow& row);
 
 struct ShotTotals {
   int num_frames = 0;   // that have a matrix
@@ -19,15 +20,15 @@ struct ShotTotals {
   int num_updates = 0;  // in which texels moved over surfaces, the first frame among them
 
   // Over the frames that have it; absent where none has.
-  absl::optional<double> energy_ratio;        // geometric mean of EnergyRatio()
-  absl::optional<double> phase_drift_texels;  // means of Crawl
-  absl::optional<double> edge_crawl_px;
-  absl::optional<double> wrong_share;  // mean of what is foretold, 0 ... 1
+  std::optional<double> energy_ratio;        // geometric mean of EnergyRatio()
+  std::optional<double> phase_drift_texels;  // means of Crawl
+  std::optional<double> edge_crawl_px;
+  std::optional<double> wrong_share;  // mean of what is foretold, 0 ... 1
 };
 
 // Of one light, or of all.
 ShotTotals TotalsOf(const ShotRows& rows,
                     ShotMode mode,
-                    absl::optional<size_t> light = absl::nullopt);
+                    std::optional<size_t> light = std::nullopt);
 
 }  // namespace lightfit

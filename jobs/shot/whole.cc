@@ -9,6 +9,7 @@
 #include "absl/strings/str_format.h"
 #include "base/parallel.h"
 #include "jobs/shot/judge.h"
+#include "optimizer/energy/reweighting.h"
 #include "optimizer/energy/summary_total.h"
 #include "optimizer/fit.h"
 
@@ -57,10 +58,13 @@ std::vector<std::optional<SummaryTotal>> WeighAllFrames(const ShotMatrices& matr
   const auto weigh = [&](size_t frame) {
     const absl::StatusOr<ReadbackFile> file = ReadFrame(job.frames[frame], job.lights);
     context->frame_status[frame] = file.status();
+    const absl::StatusOr<Surfaces> surfaces = SurfacesOf(job, file);
     for (size_t i = 0; i < job.lights.size() && file.ok(); ++i) {
       if (!matrices[i].ok() || !file->light_status[i].ok()) continue;
+      const absl::StatusOr<LightView> view = ViewIn(job, surfaces, i);
+      if (!view.ok()) continue;
       const absl::StatusOr<Summary> summary =
-          SummarizeInMap(file->View(), job.lights[i], matrices[i]->map_from_world, job.fit());
+          SummarizeInMap(*view, matrices[i]->map_from_world, job.fit());
       if (!summary.ok()) continue;  // as when it was summarised first: the light is not seen here
       const SummaryTotal own = TotalOf(*summary, job.lights[i]);
       const std::lock_guard<std::mutex> lock(mutex);
@@ -81,17 +85,17 @@ std::vector<std::optional<SummaryTotal>> WeighAllFrames(const ShotMatrices& matr
 // `matrices` are the minima of what was summed so far, in each frame's own weights.
 ShotMatrices Reweighted(ShotMatrices matrices, ShotContext* context) {
   const ShotJob& job = context->job;
-  ShotMatrices best = matrices;
+  std::vector<BestOfRounds<LightMatrix>> best(matrices.size(),
+                                              BestOfRounds<LightMatrix>(kLeastGain));
+  ShotMatrices result = matrices;
   for (int round = 0; round <= job.rounds; ++round) {
     const auto totals = WeighAllFrames(matrices, round, context);
     bool gains = false;
     for (size_t i = 0; i < matrices.size(); ++i) {
       if (!matrices[i].ok() || !totals[i].has_value()) continue;
-      matrices[i]->energy = totals[i]->footprint_sum.Value();
-      if (round == 0 || matrices[i]->energy < best[i]->energy) {
-        gains |= round == 0 || matrices[i]->energy < (1.0 - kLeastGain) * best[i]->energy;
-        best[i] = matrices[i];
-      }
+      matrices[i]->figures.energy = totals[i]->footprint_sum.Value();
+      gains |= best[i].Offer(matrices[i]->figures.energy, *matrices[i]);
+      result[i] = best[i].Best();
       matrices[i] = FitTotal(*totals[i], job.lights[i], job);
     }
     if (!gains) {
@@ -99,7 +103,7 @@ ShotMatrices Reweighted(ShotMatrices matrices, ShotContext* context) {
       break;
     }
   }
-  return best;
+  return result;
 }
 
 v1::FitResult ShotToProto(const ShotContext& context, const ShotMatrices& matrices) {
@@ -139,7 +143,7 @@ TrackedMatrices MatricesOf(const ShotJob& job, const v1::FitResult& shot) {
     tracked.matrix.light_name = job.lights[i].name;
     tracked.matrix.map = job.map;
     tracked.matrix.map_from_world = *maps[i];
-    tracked.matrix.stop_reason = StopReason::kNoSearch;
+    tracked.matrix.search.stop_reason = StopReason::kNoSearch;
     matrices.push_back(std::move(tracked));
   }
   return matrices;
@@ -170,6 +174,7 @@ void JudgeFrames(const TrackedMatrices& matrices, int begin, int end, ShotContex
     if (i > 0 && last_read != i - 1) before = ReadFrame(job.frames[i - 1], job.lights);
     absl::StatusOr<ReadbackFile> file = ReadFrame(job.frames[i], job.lights);
     context->frame_status[i] = file.status();
+    const absl::StatusOr<Surfaces> surfaces = SurfacesOf(job, file);
     const TrackedMatrices readable = FitReadable(job.lights, file, [&](absl::Span<const Light>) {
       TrackedMatrices some;
       for (size_t light = 0; light < job.lights.size(); ++light) {
@@ -179,9 +184,11 @@ void JudgeFrames(const TrackedMatrices& matrices, int begin, int end, ShotContex
     });
     FrameBefore frame_before;
     if (i > 0 && before.ok()) frame_before = {&*before, MapsOf(matrices)};
-    std::vector<absl::StatusOr<ShotFit>> fits = JudgeFits(job, file, readable, frame_before);
+    std::vector<absl::StatusOr<ShotFit>> fits = JudgeFits(job, file, surfaces, readable, frame_before);
     for (absl::StatusOr<ShotFit>& fit : fits) {
-      if (fit.ok()) fit->tracked.matrix.energy_start = fit->tracked.matrix.energy;
+      if (!fit.ok()) continue;
+      LightMatrix& matrix = fit->tracked.matrix;
+      matrix.search.energy_start = matrix.figures.energy;
     }
     context->WriteResult(ShotMode::kPerShot,
                          i,

@@ -53,19 +53,23 @@ EnergyGradient EnergyAndGradient(const Eigen::Matrix3d& map_from_ray,
 FootprintStatistics ComputeFootprintStatistics(const Eigen::Matrix3d& map_from_ray,
                                                const Samples& samples) {
   FootprintStatistics statistics;
-  if (samples.size() == 0) return statistics;
   const Eigen::Vector3d p = map_from_ray.row(2);
   const Eigen::Matrix<double, 3, 2> R12 = map_from_ray.inverse().leftCols<2>();
-  ScratchVector<double> footprints(samples.size());
+  ScratchVector<double> footprints;
+  footprints.reserve(samples.size());
   double sum_squared = 0.0, sum_weight = 0.0;
   for (size_t i = 0; i < samples.size(); ++i) {
     if (IsStopped(i)) return statistics;
     const Sample sample = samples.At(i);
-    const double squared = 0.5 * (p.dot(sample.X) * sample.D * R12).squaredNorm();
-    footprints[i] = std::sqrt(squared);
+    const double w = p.dot(sample.X);
+    if (!(w > 0.0)) continue;
+    const double squared = 0.5 * (w * sample.D * R12).squaredNorm();
+    footprints.push_back(std::sqrt(squared));
     sum_squared += sample.weight * squared;
     sum_weight += sample.weight;
   }
+  statistics.num_behind = static_cast<int64_t>(samples.size() - footprints.size());
+  if (footprints.empty()) return statistics;
   const auto quantile = [&footprints](double share) {
     const size_t rank = static_cast<size_t>(std::lround(share * (footprints.size() - 1)));
     std::nth_element(footprints.begin(), footprints.begin() + rank, footprints.end());

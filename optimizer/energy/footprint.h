@@ -8,6 +8,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 
 #include "optimizer/energy/metric.h"
 #include "optimizer/readback/samples.h"
@@ -50,9 +51,11 @@ struct FootprintStatistics {
   double median = 0;  // the rest are 0 unless FitOptions::compute_statistics
   double p99 = 0;
   double worst = 0;
+  int64_t num_behind = 0;  // samples with w <= 0: outside the map, in none of these
 };
 
-// sqrt((|dS/du|^2 + |dS/dv|^2) / 2) of every sample: root mean square, median, 99 % and largest.
+// sqrt((|dS/du|^2 + |dS/dv|^2) / 2) of every sample: root mean square, median, 99 % and largest,
+// over those in front of the map.
 FootprintStatistics ComputeFootprintStatistics(const Eigen::Matrix3d& map_from_ray,
                                                const Samples& samples);
 

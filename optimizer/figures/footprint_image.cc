@@ -26,25 +26,22 @@ absl::StatusOr<std::vector<float>> FootprintImage(const Readback& readback,
       if (!pixel.has_value()) continue;
       const double footprint = std::sqrt(0.5) * pixel->J_screen_map.norm();
       if (!std::isfinite(footprint)) continue;
-      footprints[static_cast<size_t>(y) * readback.width() + x] = static_cast<float>(footprint);
+      footprints[readback.Index(x, y)] = static_cast<float>(footprint);
     }
   }
   return footprints;
 }
 
-absl::StatusOr<std::vector<uint8_t>> SampleImage(const Readback& readback,
+absl::StatusOr<std::vector<uint8_t>> SampleImage(const Surfaces& surfaces,
                                                  const Light& light,
                                                  const SampleOptions& options) {
   if (absl::Status status = ValidateLight(light); !status.ok()) return status;
-  absl::StatusOr<Receivers> receivers =
-      FindReceivers(readback, uint32_t{1} << light.shadow_bit, options);
-  if (!receivers.ok()) return receivers.status();
-  const Samples samples =
-      SelectSamples(*receivers, light, Eigen::Matrix3d::Identity(), /*with_edge_normals=*/false);
+  const Readback& readback = surfaces.readback;
+  const Samples samples = SelectSamples(
+      surfaces, light, options, Eigen::Matrix3d::Identity(), /*with_edge_normals=*/false);
   std::vector<uint8_t> used(readback.depth.size(), 0);
   for (size_t i = 0; i < samples.size(); ++i) {
-    used[static_cast<size_t>(samples.y[i]) * readback.width() + static_cast<size_t>(samples.x[i])] =
-        1;
+    used[readback.Index(static_cast<int>(samples.x[i]), static_cast<int>(samples.y[i]))] = 1;
   }
   return used;
 }
@@ -56,7 +53,7 @@ absl::StatusOr<std::vector<Eigen::Vector3d>> ReceiverPositions(const Readback& r
   std::vector<Eigen::Vector3d> positions;
   for (int y = 0; y < readback.height(); ++y) {
     for (int x = 0; x < readback.width(); ++x) {
-      const double depth = readback.depth[static_cast<size_t>(y) * readback.width() + x];
+      const double depth = readback.depth[readback.Index(x, y)];
       if (!affine_depth.IsSurface(depth)) continue;
       const Eigen::Vector4d screen(x + 0.5, y + 0.5, affine_depth.At(x, y, depth), 1.0);
       positions.push_back((world_from_screen * screen).hnormalized());

@@ -9,8 +9,9 @@
 
 #include "absl/status/statusor.h"
 #include "geometry/light.h"
-#include "optimizer/fit_options.h"
+#include "optimizer/readback/sample_options.h"
 #include "optimizer/readback/readback.h"
+#include "optimizer/readback/surfaces.h"
 
 namespace lightfit {
 
@@ -24,9 +25,9 @@ absl::StatusOr<std::vector<float>> FootprintImage(const Readback& readback,
                                                   const SampleOptions& options = {});
 
 // 1 at the pixels whose samples are used for this light, else 0. Row-major.
-absl::StatusOr<std::vector<uint8_t>> SampleImage(const Readback& readback,
+absl::StatusOr<std::vector<uint8_t>> SampleImage(const Surfaces& surfaces,
                                                  const Light& light,
-                                                 const SampleOptions& options = {});
+                                                 const SampleOptions& options);
 
 // World positions of all receivers (pixels with a surface), in pixel order, world units.
 absl::StatusOr<std::vector<Eigen::Vector3d>> ReceiverPositions(const Readback& readback);

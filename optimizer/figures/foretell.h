@@ -10,7 +10,7 @@
 #include "absl/status/statusor.h"
 #include "geometry/light.h"
 #include "geometry/map_size.h"
-#include "optimizer/fit_options.h"
+#include "optimizer/readback/sample_options.h"
 #include "optimizer/readback/readback.h"
 
 namespace lightfit {

@@ -103,7 +103,7 @@ bool MeasurePoints(const MappedFrame& before,
   double sum = 0.0;
   for (int y = step / 2; y < readback.height(); y += step) {
     for (int x = step / 2; x < readback.width(); x += step) {
-      const float depth = readback.depth[static_cast<size_t>(y) * readback.width() + x];
+      const float depth = readback.depth[readback.Index(x, y)];
       if (!affine_depth.IsSurface(depth)) continue;
       const Eigen::Vector4d screen(x + 0.5, y + 0.5, affine_depth.At(x, y, depth), 1.0);
       const Eigen::Vector3d position = (world_from_screen * screen).hnormalized();
@@ -131,19 +131,25 @@ absl::Status MeasureEdge(const MappedFrame& before,
                          const Sight& sight_before,
                          const SampleOptions& options,
                          Crawl* crawl) {
-  const absl::StatusOr<Receivers> receivers =
-      FindReceivers(after.readback, uint32_t{1} << light.shadow_bit, options);
-  if (!receivers.ok()) return receivers.status();
+  std::optional<Surfaces> own;
+  if (after.surfaces == nullptr) {
+    absl::StatusOr<Surfaces> found =
+        FindSurfaces(after.readback, uint32_t{1} << light.shadow_bit, options);
+    if (!found.ok()) return found.status();
+    own = *std::move(found);
+  }
+  const Surfaces& surfaces = own.has_value() ? *own : *after.surfaces;
   const absl::StatusOr<PixelFootprints> footprints =
       PixelFootprints::Create(after.readback, light, after.map_from_world, options);
   if (!footprints.ok()) return footprints.status();
   const Samples samples =
-      SelectSamples(*receivers, light, Eigen::Matrix3d::Identity(), /*with_edge_normals=*/true);
+      SelectSamples(
+      surfaces, light, options, Eigen::Matrix3d::Identity(), /*with_edge_normals=*/true);
   const size_t step = (samples.size() + kMaxPoints - 1) / kMaxPoints;
   double sum = 0.0;
   for (size_t i = 0; i < samples.size(); i += step) {
     const Eigen::Vector4d screen(samples.x[i], samples.y[i], samples.d[i], 1.0);
-    const Eigen::Vector3d position = (receivers->world_from_screen * screen).hnormalized();
+    const Eigen::Vector3d position = (surfaces.world_from_screen * screen).hnormalized();
     if (!sight_before.Sees(position)) continue;
     const std::optional<Eigen::Vector2d> drift = PhaseDrift(before, after, position);
     if (!drift.has_value()) continue;
@@ -168,9 +174,7 @@ absl::StatusOr<Crawl> MeasureCrawl(const MappedFrame& before,
                                    const MappedFrame& after,
                                    const Light& light,
                                    const SampleOptions& options) {
-  FitOptions fit;
-  fit.samples = options;
-  if (absl::Status status = ValidateFitOptions(fit); !status.ok()) return status;
+  if (absl::Status status = ValidateSampleOptions(options); !status.ok()) return status;
   if (absl::Status status = ValidateLight(light); !status.ok()) return status;
   if (absl::Status status = Validate(before, "before"); !status.ok()) return status;
   if (absl::Status status = Validate(after, "after"); !status.ok()) return status;

@@ -15,8 +15,9 @@
 #include "absl/status/statusor.h"
 #include "geometry/light.h"
 #include "geometry/map_size.h"
-#include "optimizer/fit_options.h"
+#include "optimizer/readback/sample_options.h"
 #include "optimizer/readback/readback.h"
+#include "optimizer/readback/surfaces.h"
 
 namespace lightfit {
 
@@ -25,6 +26,9 @@ struct MappedFrame {
   Readback readback;
   Eigen::Matrix4d map_from_world;  // texels, as LightMatrix::map_from_world; row 3 does not matter
   MapSize map;
+
+  // Of `readback`, where they have been found already; null: found when they are needed.
+  const Surfaces* surfaces = nullptr;
 };
 
 struct Crawl {

@@ -126,7 +126,7 @@ absl::Status SurroundedError(const Light& light) {
       light.position.z()));
 }
 
-absl::StatusOr<RayCover> CoverReceivers(const Receivers& receivers,
+absl::StatusOr<RayCover> CoverReceivers(const Surfaces& receivers,
                                         const Light& light,
                                         Cover which) {
   DepthTiles shadowed;

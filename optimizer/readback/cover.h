@@ -1,7 +1,7 @@
 // optimizer/readback/cover.h
 //
 // What one light's map must cover: the cone of rays to all receivers, or to the shadowed ones.
-// In:   Receivers, Light, Cover.
+// In:   Surfaces, Light, Cover.
 // Out:  coordinates that fit the rays, their convex hull, their mean, and the range of depth.
 #pragma once
 
@@ -53,7 +53,7 @@ struct RayCover {
 //
 // FailedPrecondition when the receivers to cover surround a point light, or all lie in one plane
 // with the light; CancelledError once a StopScope says so.
-absl::StatusOr<RayCover> CoverReceivers(const Receivers& receivers,
+absl::StatusOr<RayCover> CoverReceivers(const Surfaces& receivers,
                                         const Light& light,
                                         Cover cover = Cover::kReceivers);
 

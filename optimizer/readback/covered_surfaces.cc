@@ -40,7 +40,7 @@ ScratchVector<Eigen::Vector4d> OneReceiverPerTile(const CoveredSurfaces& covered
   const auto first_receiver = [&](const DepthTile& tile) -> Eigen::Vector4d {
     for (int y = tile.y_begin; y < tile.y_end; ++y) {
       for (int x = tile.x_begin; x < tile.x_end; ++x) {
-        const size_t pixel = static_cast<size_t>(y) * readback.width() + x;
+        const size_t pixel = readback.Index(x, y);
         if (mask != 0 && (readback.shadow_bits[pixel] & mask) == 0) continue;
         const double depth = readback.depth[pixel];
         if (!covered.receivers.affine_depth.IsSurface(depth)) continue;

@@ -1,7 +1,7 @@
 // optimizer/readback/covered_surfaces.h
 //
 // The receivers that one light's map must cover, tile by tile and one by one.
-// In:   Receivers, tiles of those to cover.
+// In:   Surfaces, tiles of those to cover.
 // Out:  their screen points and rays, which are too many to keep: whoever wants them goes through
 //       them again.
 #pragma once
@@ -31,7 +31,7 @@ void ForEachTile(const TileGrid& grid, const Visitor& visit) {
 }
 
 struct CoveredSurfaces {
-  const Receivers& receivers;
+  const Surfaces& receivers;
   const DepthTiles& tiles;
 
   // Calls visit(screen) for every one of the tile, as screen points (x, y, d, 1).

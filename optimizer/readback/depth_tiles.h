@@ -60,7 +60,7 @@ void ForEachSurface(const Readback& readback,
                     const Visitor& visit) {
   for (int y = tile.y_begin; y < tile.y_end; ++y) {
     for (int x = tile.x_begin; x < tile.x_end; ++x) {
-      const size_t pixel = static_cast<size_t>(y) * readback.width() + x;
+      const size_t pixel = readback.Index(x, y);
       if (filter.shadow_mask != 0 && (readback.shadow_bits[pixel] & filter.shadow_mask) == 0) {
         continue;
       }

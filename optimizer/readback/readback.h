@@ -5,6 +5,7 @@
 // Out:  a checked view that the stations downstream read.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "absl/status/status.h"
@@ -25,6 +26,9 @@ struct Readback {
 
   int width() const { return camera.width; }
   int height() const { return camera.height; }
+
+  // Where the pixel with column x and row y stands in `depth` and `shadow_bits`.
+  size_t Index(int x, int y) const { return static_cast<size_t>(y) * camera.width + x; }
 };
 
 // Checks the camera and the buffer sizes; says which field is wrong, its value, and what is wanted.

@@ -38,6 +38,8 @@ struct SampleOptions {
   // Half width of the window, in pixels, over which the direction of a shadow edge is estimated
   // (the metrics across the edge only). 1 ... 8.
   int edge_window = 2;
+
+  bool operator==(const SampleOptions&) const = default;
 };
 
 // InvalidArgument names the field as options.samples.FIELD.

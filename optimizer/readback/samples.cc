@@ -26,18 +26,36 @@ Sample Samples::At(size_t i) const {
   return sample;
 }
 
+void Samples::AppendFrom(const Samples& other, size_t i) {
+  x.push_back(other.x[i]);
+  y.push_back(other.y[i]);
+  d.push_back(other.d[i]);
+  d_x.push_back(other.d_x[i]);
+  d_y.push_back(other.d_y[i]);
+  weight.push_back(other.weight[i]);
+  if (!other.has_edge_normals()) return;
+  edge_normal_x.push_back(other.edge_normal_x[i]);
+  edge_normal_y.push_back(other.edge_normal_y[i]);
+}
+
 namespace {
+
+// Whether the plane of a boundary pixel is known as well as the options want it.
+bool IsWanted(const BoundaryPixel& pixel, const SampleOptions& options) {
+  return options.use_outlines || !pixel.is_outline;
+}
 
 enum class Facing : uint8_t { kAway, kEdgeOn, kTowards };
 
-Facing FacingOf(const BoundaryPixel& pixel, const Light& light, double min_cos_light) {
+Facing FacingOf(const BoundaryPixel& pixel, const Light& light, const SampleOptions& options) {
   const Eigen::Vector3d to_light = light.kind == Light::Kind::kPoint
                                        ? Eigen::Vector3d(light.position - pixel.position)
                                        : Eigen::Vector3d(-light.direction.stableNormalized());
   const double facing = pixel.normal.dot(to_light);
   if (facing <= 0.0) return Facing::kAway;
   // Also false for a light at the receiver, and for normals that are not finite.
-  const bool is_seen = !pixel.edge_on_to_eye && facing > min_cos_light * to_light.norm();
+  const bool faces_eye = pixel.eye_along_normal >= options.min_cos_eye * pixel.eye_distance;
+  const bool is_seen = faces_eye && facing > options.min_cos_light * to_light.norm();
   return is_seen ? Facing::kTowards : Facing::kEdgeOn;
 }
 
@@ -45,7 +63,7 @@ Facing FacingOf(const BoundaryPixel& pixel, const Light& light, double min_cos_l
 // from the light, whose bit is 0 because no shadow is looked up there.
 class Terminators {
  public:
-  Terminators(const Receivers& receivers, uint32_t bit, const ScratchVector<Facing>& facing)
+  Terminators(const Surfaces& receivers, uint32_t bit, const ScratchVector<Facing>& facing)
       : receivers_(receivers), bit_(bit), facing_(facing) {
     row_begin_.reserve(receivers.readback.height() + 1);
     for (size_t i = 0; i < receivers.boundary.size(); ++i) {
@@ -82,41 +100,46 @@ class Terminators {
            facing_[found - begin] == Facing::kAway;
   }
 
-  const Receivers& receivers_;
+  const Surfaces& receivers_;
   uint32_t bit_;
   const ScratchVector<Facing>& facing_;  // by boundary pixel
-  ScratchVector<size_t> row_begin_;      // in Receivers::boundary
+  ScratchVector<size_t> row_begin_;      // in Surfaces::boundary
 };
 
 }  // namespace
 
-Samples SelectSamples(const Receivers& receivers,
+Samples SelectSamples(const Surfaces& surfaces,
                       const Light& light,
+                      const SampleOptions& options,
                       const Eigen::Matrix3d& normalized_from_ray,
                       bool with_edge_normals) {
   const uint32_t bit = uint32_t{1} << light.shadow_bit;
   Samples samples;
-  samples.ray_from_screen = normalized_from_ray * RayFromWorld(light) * receivers.world_from_screen;
-  samples.counts = receivers.counts[light.shadow_bit];
+  samples.ray_from_screen = normalized_from_ray * RayFromWorld(light) * surfaces.world_from_screen;
+  samples.counts = surfaces.counts[light.shadow_bit];
   for (auto* array : {&samples.x, &samples.y, &samples.d, &samples.d_x, &samples.d_y}) {
     array->reserve(samples.counts.candidates);
   }
   const EdgeNormals edge_normals(
-      receivers.readback, receivers.affine_depth, light.shadow_bit, receivers.options.edge_window);
+      surfaces.readback, surfaces.affine_depth, light.shadow_bit, options.edge_window);
   ScratchVector<Facing> facing;
-  facing.reserve(receivers.boundary.size());
-  for (const BoundaryPixel& pixel : receivers.boundary) {
+  facing.reserve(surfaces.boundary.size());
+  for (const BoundaryPixel& pixel : surfaces.boundary) {
     if (IsStopped(facing.size())) return samples;
-    const bool is_candidate = (pixel.lights & bit) != 0;
-    facing.push_back(is_candidate ? FacingOf(pixel, light, receivers.options.min_cos_light)
+    const bool is_candidate = (pixel.lights & bit) != 0 && IsWanted(pixel, options);
+    facing.push_back(is_candidate ? FacingOf(pixel, light, options)
                                   : Facing::kTowards);
   }
-  const Terminators terminators(receivers, bit, facing);
-  for (size_t i = 0; i < receivers.boundary.size() && !IsStopped(i); ++i) {
-    const BoundaryPixel& pixel = receivers.boundary[i];
+  const Terminators terminators(surfaces, bit, facing);
+  for (size_t i = 0; i < surfaces.boundary.size() && !IsStopped(i); ++i) {
+    const BoundaryPixel& pixel = surfaces.boundary[i];
     if ((pixel.lights & bit) == 0) continue;
+    if (!IsWanted(pixel, options)) {
+      ++samples.counts.discontinuity;
+      continue;
+    }
     if (facing[i] == Facing::kAway ||
-        (!receivers.options.use_terminators && terminators.Has(pixel))) {
+        (!options.use_terminators && terminators.Has(pixel))) {
       ++samples.counts.facing_away;
       continue;
     }
@@ -147,15 +170,7 @@ Samples SamplesInFront(const Samples& samples,
   front.counts = samples.counts;
   for (size_t i = 0; i < samples.size() && !IsStopped(i); ++i) {
     if (!(axis.dot(samples.At(i).X) > 0.0)) continue;
-    front.x.push_back(samples.x[i]);
-    front.y.push_back(samples.y[i]);
-    front.d.push_back(samples.d[i]);
-    front.d_x.push_back(samples.d_x[i]);
-    front.d_y.push_back(samples.d_y[i]);
-    front.weight.push_back(samples.weight[i]);
-    if (!samples.has_edge_normals()) continue;
-    front.edge_normal_x.push_back(samples.edge_normal_x[i]);
-    front.edge_normal_y.push_back(samples.edge_normal_y[i]);
+    front.AppendFrom(samples, i);
   }
   return front;
 }

@@ -1,7 +1,7 @@
 // optimizer/readback/samples.h
 //
 // The samples of one light: pixels near its shadow boundary, with all that the energy needs.
-// In:   Receivers, Light, the coordinates of the rays.
+// In:   Surfaces, Light, the coordinates of the rays.
 // Out:  Samples, a structure of arrays that the summary kernel reads, and single Samples {X, D}.
 #pragma once
 
@@ -36,13 +36,17 @@ struct Samples {
   size_t size() const { return x.size(); }
   bool has_edge_normals() const { return !edge_normal_x.empty(); }
   Sample At(size_t i) const;
+
+  // Appends entry i of `other`, which has edge normals if this has.
+  void AppendFrom(const Samples& other, size_t i);
 };
 
-// The light's share of the receivers' boundary: those that face the light, are not edge-on to it or
-// to the eye. `normalized_from_ray` acts on RayFromWorld(light); the identity keeps light space.
+// The light's share of the boundary, as `options` want it: those that face the light, are not edge-on
+// to it or to the eye. `normalized_from_ray` acts on RayFromWorld(light); the identity keeps light space.
 // Here and below: of no use once a StopScope says so.
-Samples SelectSamples(const Receivers& receivers,
+Samples SelectSamples(const Surfaces& surfaces,
                       const Light& light,
+                      const SampleOptions& options,
                       const Eigen::Matrix3d& normalized_from_ray,
                       bool with_edge_normals);
 

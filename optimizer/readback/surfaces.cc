@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <optional>
@@ -14,6 +15,8 @@
 namespace lightfit {
 
 namespace {
+
+std::atomic<int64_t> num_surfaces_found = 0;
 
 absl::Status NoReceiversError(const Readback& readback, int64_t num_invalid, int64_t num_pixels) {
   if (num_invalid == 0) {
@@ -54,6 +57,7 @@ bool DepthGradientAt(const Readback& readback,
     return affine_depth.At(px, py, depth) - d;
   };
   const double noise = options.depth_noise * std::abs(d);
+  bool is_one_sided = false;
   const auto derivative = [&](int dx, int dy) -> std::optional<double> {
     const std::optional<double> back = rise(dx, dy, -1), ahead = rise(dx, dy, 1);
     if (back.has_value() && ahead.has_value()) {
@@ -63,6 +67,7 @@ bool DepthGradientAt(const Readback& readback,
       if (!bends) return 0.5 * (*ahead - *back);
     }
     if (!options.use_outlines) return std::nullopt;
+    is_one_sided = true;
     if (!back.has_value() || !ahead.has_value()) {
       return back.has_value() ? std::optional<double>(-*back) : ahead;
     }
@@ -78,7 +83,7 @@ bool DepthGradientAt(const Readback& readback,
   const std::optional<double> d_x = derivative(1, 0);
   const std::optional<double> d_y = derivative(0, 1);
   if (!d_x.has_value() || !d_y.has_value()) return false;
-  *gradient = {d, *d_x, *d_y};
+  *gradient = {d, *d_x, *d_y, is_one_sided};
   return true;
 }
 
@@ -99,30 +104,33 @@ Eigen::Vector3d SurfaceNormal(const Eigen::Matrix4d& screen_from_world,
   return (orthographic ? 1.0 : -1.0) * normal.normalized();
 }
 
-absl::StatusOr<Receivers> FindReceivers(const Readback& readback,
+absl::StatusOr<Surfaces> FindSurfaces(const Readback& readback,
                                         uint32_t light_mask,
                                         const SampleOptions& options) {
+  num_surfaces_found.fetch_add(1, std::memory_order_relaxed);
   if (absl::Status status = ValidateReadback(readback); !status.ok()) return status;
+  SampleOptions with_outlines = options;
+  with_outlines.use_outlines = true;
   constexpr char kSubject[] = "readback";
   const int width = readback.width();
   const int height = readback.height();
-  Receivers receivers(readback, options);
-  const AffineDepth& affine_depth = receivers.affine_depth;
-  receivers.tiles = BuildDepthTiles(readback, affine_depth, SurfaceFilter());
+  Surfaces surfaces(readback, options);
+  const AffineDepth& affine_depth = surfaces.affine_depth;
+  surfaces.tiles = BuildDepthTiles(readback, affine_depth, SurfaceFilter());
   if (absl::Status status = CheckStop(kSubject); !status.ok()) return status;
-  const int64_t num_receivers = receivers.tiles.num_surfaces;
+  const int64_t num_receivers = surfaces.tiles.num_surfaces;
   const int64_t num_pixels = static_cast<int64_t>(width) * height;
-  const int64_t num_invalid = num_pixels - num_receivers - receivers.tiles.num_background;
+  const int64_t num_invalid = num_pixels - num_receivers - surfaces.tiles.num_background;
   if (num_receivers == 0) return NoReceiversError(readback, num_invalid, num_pixels);
-  for (SampleCounts& counts : receivers.counts) {
+  for (SampleCounts& counts : surfaces.counts) {
     counts.receivers = num_receivers;
     counts.invalid_depth = num_invalid;
   }
 
-  const Eigen::Matrix4d screen_from_world = receivers.world_from_screen.inverse();
+  const Eigen::Matrix4d screen_from_world = surfaces.world_from_screen.inverse();
   const Eigen::Vector3d eye =
-      receivers.world_from_screen.block<3, 1>(0, 2) /
-      (readback.camera.orthographic ? 1.0 : receivers.world_from_screen(3, 2));
+      surfaces.world_from_screen.block<3, 1>(0, 2) /
+      (readback.camera.orthographic ? 1.0 : surfaces.world_from_screen(3, 2));
   ScratchVector<int32_t> columns(width);
   for (int y = 1; y + 1 < height; ++y) {
     if (absl::Status status = CheckStop(kSubject); !status.ok()) return status;
@@ -140,9 +148,9 @@ absl::StatusOr<Receivers> FindReceivers(const Readback& readback,
       const bool is_surface =
           affine_depth.IsSurface(readback.depth[static_cast<size_t>(y) * width + x]);
       const bool continues =
-          is_surface && DepthGradientAt(readback, affine_depth, options, x, y, &gradient);
+          is_surface && DepthGradientAt(readback, affine_depth, with_outlines, x, y, &gradient);
       for (uint32_t bits = pixel.lights; bits != 0; bits &= bits - 1) {
-        SampleCounts& counts = receivers.counts[std::countr_zero(bits)];
+        SampleCounts& counts = surfaces.counts[std::countr_zero(bits)];
         ++counts.candidates;
         if (!is_surface) {
           ++counts.background;
@@ -155,17 +163,21 @@ absl::StatusOr<Receivers> FindReceivers(const Readback& readback,
       pixel.d_x = gradient.d_x;
       pixel.d_y = gradient.d_y;
       const Eigen::Vector4d position =
-          receivers.world_from_screen * Eigen::Vector4d(x + 0.5, y + 0.5, gradient.d, 1.0);
+          surfaces.world_from_screen * Eigen::Vector4d(x + 0.5, y + 0.5, gradient.d, 1.0);
       pixel.position = position.head<3>() / position.w();
       pixel.normal = SurfaceNormal(screen_from_world, readback.camera.orthographic, x, y, gradient);
       const Eigen::Vector3d to_eye = readback.camera.orthographic
                                          ? Eigen::Vector3d(-eye)
                                          : Eigen::Vector3d(eye - pixel.position);
-      pixel.edge_on_to_eye = !(pixel.normal.dot(to_eye) >= options.min_cos_eye * to_eye.norm());
-      receivers.boundary.push_back(pixel);
+      pixel.eye_along_normal = pixel.normal.dot(to_eye);
+      pixel.eye_distance = to_eye.norm();
+      pixel.is_outline = gradient.is_one_sided;
+      surfaces.boundary.push_back(pixel);
     }
   }
-  return receivers;
+  return surfaces;
 }
+
+int64_t NumSurfacesFound() { return num_surfaces_found.load(std::memory_order_relaxed); }
 
 }  // namespace lightfit

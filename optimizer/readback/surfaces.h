@@ -1,6 +1,7 @@
 // optimizer/readback/surfaces.h
 //
-// What a read-back says before any light is looked at: computed once, used by every light.
+// What a read-back says before any light is looked at: computed once, used by every light and
+// every choice of samples.
 // In:   Readback, SampleOptions.
 // Out:  depth tiles that bound all receivers, and the pixels at a shadow boundary of any light with
 //       their position, affine depth derivatives and surface normal.
@@ -29,32 +30,40 @@ struct BoundaryPixel {
   double d_x, d_y;           // its screen derivatives, per pixel: exact on a plane
   Eigen::Vector3d position;  // world
   Eigen::Vector3d normal;    // of the surface, unit, towards the eye; world
-  bool edge_on_to_eye;       // by SampleOptions::min_cos_eye
+  // Cosine between the normal and the way to the eye, times the eye's distance; and that distance.
+  double eye_along_normal, eye_distance;
+  bool is_outline;  // the derivative is that of one side (SampleOptions::use_outlines)
 };
 
-struct Receivers {
-  Receivers(const Readback& readback, const SampleOptions& options)
+struct Surfaces {
+  Surfaces(const Readback& readback, const SampleOptions& options)
       : readback(readback),
         options(options),
         affine_depth(readback.camera, readback.depth_kind),
         world_from_screen(readback.camera.WorldFromScreen()) {}
 
   Readback readback;
-  SampleOptions options;
+  SampleOptions options;     // of which max_depth_bend and depth_noise count here
   AffineDepth affine_depth;  // of the read-back's camera and depth kind
   Eigen::Matrix4d world_from_screen;
   DepthTiles tiles;                       // of all receivers
-  ScratchVector<BoundaryPixel> boundary;  // in pixel order
+  ScratchVector<BoundaryPixel> boundary;  // in pixel order, outlines among them
   std::array<SampleCounts, kMaxLights>
       counts;  // by shadow bit; used, facing_away, edge_on are 0 yet
 };
 
 // Looks at the shadow bits in `light_mask` only. Pixels in the outermost rows and columns have no
-// central differences and never count as boundary. InvalidArgument when the read-back is not valid
-// or has no receiver at all; CancelledError once a StopScope says so.
-absl::StatusOr<Receivers> FindReceivers(const Readback& readback,
-                                        uint32_t light_mask,
-                                        const SampleOptions& options);
+// central differences and never count as boundary. What is found serves any choice of samples with
+// the same max_depth_bend and depth_noise (SelectSamples()): once for a read-back is enough.
+// InvalidArgument when the read-back is not valid or has no receiver at all; CancelledError once a
+// StopScope says so.
+absl::StatusOr<Surfaces> FindSurfaces(const Readback& readback,
+                                      uint32_t light_mask,
+                                      const SampleOptions& options);
+
+// How often FindSurfaces() was called since the program began, by all threads: it is the one pass
+// over all pixels, and tests hold jobs to one for each read-back.
+int64_t NumSurfacesFound();
 
 // Affine depth and its derivatives at an inner pixel: central differences where the surface
 // continues to both sides (SampleOptions::max_depth_bend). At an outline or a crease, where it does
@@ -63,6 +72,7 @@ absl::StatusOr<Receivers> FindReceivers(const Readback& readback,
 // False where there is no surface, or none on either side.
 struct DepthGradient {
   double d, d_x, d_y;
+  bool is_one_sided;  // along x or y
 };
 bool DepthGradientAt(const Readback& readback,
                      const AffineDepth& affine_depth,

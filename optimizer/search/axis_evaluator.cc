@@ -42,7 +42,7 @@ SampleEvaluator::SampleEvaluator(const Samples& samples,
       metric_(metric) {}
 
 SampleEvaluator::SampleEvaluator(const Samples& samples,
-                                 const Receivers& receivers,
+                                 const Surfaces& receivers,
                                  const MetricWeights& metric,
                                  const AffineProblem& problem,
                                  double min_w)

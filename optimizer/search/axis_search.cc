@@ -10,8 +10,10 @@
 #include "base/scratch.h"
 #include "base/stop.h"
 #include "optimizer/energy/l1_weights.h"
+#include "optimizer/energy/reweighting.h"
 #include "optimizer/search/axis_evaluator.h"
 #include "optimizer/search/global_search.h"
+#include "optimizer/search/line_search.h"
 #include "optimizer/search/polish.h"
 #include "optimizer/search/refine.h"
 
@@ -28,17 +30,17 @@ std::optional<AffineFit> StartFit(const Summary& summary, AxisEvaluator& evaluat
   return start;
 }
 
-absl::StatusOr<SearchOutcome> SearchSquares(const SearchInputs& inputs,
-                                            const Summary& summary,
-                                            MapSize map,
-                                            const SearchOptions& options) {
+absl::StatusOr<SearchResult> SearchSquares(const SearchInputs& inputs,
+                                           const Summary& summary,
+                                           MapSize map,
+                                           const SearchOptions& options) {
   const AffineProblem problem = MakeAffineProblem(summary, map, options);
   std::optional<SampleEvaluator> by_samples;
   std::optional<SummaryEvaluator> by_summary;
   AxisEvaluator* evaluator = nullptr;
-  if (options.sample_by_sample && inputs.samples != nullptr && inputs.receivers != nullptr) {
+  if (options.sample_by_sample && inputs.samples != nullptr && inputs.surfaces != nullptr) {
     evaluator = &by_samples.emplace(
-        *inputs.samples, *inputs.receivers, summary.metric, problem, options.min_w);
+        *inputs.samples, *inputs.surfaces, summary.metric, problem, options.min_w);
   } else {
     evaluator = &by_summary.emplace(summary, problem, options.min_w);
   }
@@ -50,48 +52,40 @@ absl::StatusOr<SearchOutcome> SearchSquares(const SearchInputs& inputs,
                         inputs.light.name,
                         options.min_w));
   }
-  SearchOutcome outcome;
-  outcome.energy_start = start->energy;
-  SearchResult& result = outcome.result;
-  int refine_evaluations = 0;
   switch (options.search) {
-    case Search::kFocused:
+    case Search::kFocused: {
+      SearchResult result;
       result.fit = *start;
-      result.trace.push_back({"start", evaluator->num_evaluations(), start->energy});
-      result.stop_reason = StopReason::kNoSearch;
-      break;
+      SearchReport& report = result.report;
+      report.energy_start = start->energy;
+      report.evaluations = evaluator->num_evaluations();
+      report.trace.push_back({"start", report.evaluations, start->energy});
+      report.stop_reason = StopReason::kNoSearch;
+      return result;
+    }
     case Search::kRotationLineSearch:
-      result = RotationLineSearch(*evaluator, *start, options.line_search_rounds);
-      break;
+      return RotationLineSearch(*evaluator, *start, options.line_search_rounds);
     case Search::kRotationLineSearchRefined: {
-      result = RotationLineSearch(*evaluator, *start, options.line_search_rounds);
-      RefineResult refined =
+      SearchResult result = RotationLineSearch(*evaluator, *start, options.line_search_rounds);
+      SearchReport& report = result.report;
+      SearchResult refined =
           RefineAxis(summary, problem, options.min_w, options.refiner, result.fit);
-      refine_evaluations = refined.evaluations;
-      result.trace.push_back(
-          {"refine", evaluator->num_evaluations() + refine_evaluations, refined.fit.energy});
-      const RefineResult polished =
+      report.evaluations += refined.report.evaluations;
+      report.trace.push_back({"refine", report.evaluations, refined.fit.energy});
+      const SearchResult polished =
           PolishAxis(summary, problem, options.min_w, Polish::kThorough, refined.fit);
-      refine_evaluations += polished.evaluations;
-      result.trace.push_back(
-          {"polish", evaluator->num_evaluations() + refine_evaluations, polished.fit.energy});
+      report.evaluations += polished.report.evaluations;
+      report.trace.push_back({"polish", report.evaluations, polished.fit.energy});
+      report.stop_reason = StopReason::kConverged;
+      report.solver_report = std::move(refined.report.solver_report);
       result.fit = polished.fit;
-      result.stop_reason = StopReason::kConverged;
-      outcome.solver_report = std::move(refined.report);
-      break;
+      return result;
     }
     case Search::kGlobal:
-      result = GlobalSearch(summary,
-                            *evaluator,
-                            *start,
-                            options.grid_directions,
-                            options.refiner,
-                            &outcome.solver_report);
-      refine_evaluations = result.trace.back().evaluations - evaluator->num_evaluations();
-      break;
+      return GlobalSearch(
+          summary, *evaluator, *start, options.grid_directions, options.refiner);
   }
-  outcome.evaluations = evaluator->num_evaluations() + refine_evaluations;
-  return outcome;
+  return absl::InvalidArgumentError("options.search: no such search");
 }
 
 // Whether the options ask for more than what is published.
@@ -99,32 +93,32 @@ bool Polishes(const SearchOptions& options) {
   return options.search == Search::kGlobal || options.search == Search::kRotationLineSearchRefined;
 }
 
-// SearchInputs::to_the_end.
+// SearchEffort::kToTheEnd.
 void PolishExactly(const Summary& summary,
                    MapSize map,
                    const SearchOptions& options,
-                   SearchOutcome* outcome) {
+                   SearchResult* result) {
   const AffineProblem problem = MakeAffineProblem(summary, map, options);
-  RefineResult polished =
-      PolishAxis(summary, problem, options.min_w, Polish::kExact, outcome->result.fit);
-  outcome->result.fit = polished.fit;
-  outcome->evaluations += polished.evaluations;
-  outcome->result.trace.push_back({"exact", outcome->evaluations, polished.fit.energy});
+  const SearchResult polished =
+      PolishAxis(summary, problem, options.min_w, Polish::kExact, result->fit);
+  result->fit = polished.fit;
+  result->report.evaluations += polished.report.evaluations;
+  result->report.trace.push_back({"exact", result->report.evaluations, polished.fit.energy});
 }
 
 // Where the search began, judged by the sum of footprints.
-absl::StatusOr<SearchOutcome> StartOfL1(const SearchInputs& inputs,
-                                        MapSize map,
-                                        const SearchOptions& options) {
+absl::StatusOr<SearchResult> StartOfL1(const SearchInputs& inputs,
+                                       MapSize map,
+                                       const SearchOptions& options) {
   SearchOptions focused = options;
   focused.search = Search::kFocused;
-  absl::StatusOr<SearchOutcome> start = SearchSquares(inputs, inputs.summary, map, focused);
+  absl::StatusOr<SearchResult> start = SearchSquares(inputs, inputs.summary, map, focused);
   if (!start.ok()) return start.status();
-  AffineFit& fit = start->result.fit;
-  fit.energy = WeightsForL1(*inputs.samples, inputs.summary.metric, fit.map_from_ray)
-                   .footprint_sum;
-  start->energy_start = fit.energy;
-  start->result.trace = {{"start", start->evaluations, fit.energy}};
+  AffineFit& fit = start->fit;
+  fit.energy =
+      WeightsForL1(*inputs.samples, inputs.summary.metric, fit.map_from_ray).footprint_sum;
+  start->report.energy_start = fit.energy;
+  start->report.trace = {{"start", start->report.evaluations, fit.energy}};
   return start;
 }
 
@@ -132,16 +126,17 @@ absl::StatusOr<SearchOutcome> StartOfL1(const SearchInputs& inputs,
 // over its footprint in the round before, so that the weighted squares sum to the footprints. The
 // first round searches as the options say; the axis then moves little, so that the global and the
 // refined search only polish it in the rounds that follow.
-absl::StatusOr<SearchOutcome> SearchL1(const SearchInputs& inputs,
-                                       MapSize map,
-                                       const SearchOptions& options) {
-  absl::StatusOr<SearchOutcome> best = StartOfL1(inputs, map, options);
-  if (!best.ok()) return best.status();
-  ScratchVector<TraceStep> trace = best->result.trace;
-  const double energy_start = best->energy_start;
-  int evaluations = best->evaluations;
+absl::StatusOr<SearchResult> SearchL1(const SearchInputs& inputs,
+                                      MapSize map,
+                                      const SearchOptions& options) {
+  absl::StatusOr<SearchResult> start = StartOfL1(inputs, map, options);
+  if (!start.ok()) return start.status();
+  SearchReport report = start->report;
+  SearchResult current = *start;
+  BestOfRounds<SearchResult> best;
+  const double start_energy = start->fit.energy;
+  best.Offer(start_energy, *std::move(start));
   Samples reweighted = *inputs.samples;
-  SearchOutcome current = *best;
   for (int round = 0; round < options.reweighting_rounds; ++round) {
     if (StopRequested()) break;
     const Summary summary =
@@ -149,60 +144,62 @@ absl::StatusOr<SearchOutcome> SearchL1(const SearchInputs& inputs,
     if (round > 0 && Polishes(options)) {
       const AffineProblem problem = MakeAffineProblem(summary, map, options);
       SummaryEvaluator evaluator(summary, problem, options.min_w);
-      const std::optional<AffineFit> start =
-          evaluator.Evaluate(current.result.fit.map_from_ray.row(2).transpose());
-      if (!start.has_value()) break;
+      const std::optional<AffineFit> from =
+          evaluator.Evaluate(current.fit.map_from_ray.row(2).transpose());
+      if (!from.has_value()) break;
       const bool is_last = round + 1 == options.reweighting_rounds;
-      RefineResult polished = PolishAxis(
-          summary, problem, options.min_w, is_last ? Polish::kThorough : Polish::kQuick, *start);
-      current.result.fit = polished.fit;
-      evaluations += 1 + polished.evaluations;
+      const SearchResult polished = PolishAxis(
+          summary, problem, options.min_w, is_last ? Polish::kThorough : Polish::kQuick, *from);
+      current.fit = polished.fit;
+      report.evaluations += 1 + polished.report.evaluations;
     } else {
-      const SearchInputs round_inputs = {inputs.light, summary, &reweighted, inputs.receivers};
-      absl::StatusOr<SearchOutcome> outcome = SearchSquares(round_inputs, summary, map, options);
-      if (!outcome.ok()) return outcome.status();
-      current = *std::move(outcome);
-      evaluations += current.evaluations;
+      const SearchInputs round_inputs = {inputs.light, summary, &reweighted, inputs.surfaces};
+      absl::StatusOr<SearchResult> result = SearchSquares(round_inputs, summary, map, options);
+      if (!result.ok()) return result.status();
+      current = *std::move(result);
+      report.evaluations += current.report.evaluations;
     }
     if (StopRequested()) break;
-    L1Weights l1 = WeightsForL1(
-        *inputs.samples, inputs.summary.metric, current.result.fit.map_from_ray);
-    trace.push_back({round == 0 ? "search" : "reweight", evaluations, l1.footprint_sum});
-    if (l1.footprint_sum < best->result.fit.energy) {
-      best = current;
-      best->result.fit.energy = l1.footprint_sum;
-    }
+    L1Weights l1 =
+        WeightsForL1(*inputs.samples, inputs.summary.metric, current.fit.map_from_ray);
+    report.trace.push_back(
+        {round == 0 ? "search" : "reweight", report.evaluations, l1.footprint_sum});
+    SearchResult candidate = current;
+    candidate.fit.energy = l1.footprint_sum;
+    best.Offer(l1.footprint_sum, std::move(candidate));
     reweighted.weight = std::move(l1.weights);
   }
-  best->energy_start = energy_start;
-  best->evaluations = evaluations;
-  best->result.trace = std::move(trace);
-  return best;
+  SearchResult result = std::move(best).Best();
+  report.stop_reason = result.report.stop_reason;
+  report.solver_report = std::move(result.report.solver_report);
+  result.report = std::move(report);
+  return result;
 }
 
 // The energies of a search on weighted squares as bounds of the sum of footprints.
-SearchOutcome AsFootprintSums(SearchOutcome outcome, double footprint_sum) {
+SearchResult AsFootprintSums(SearchResult result, double footprint_sum) {
   const auto convert = [footprint_sum](double* energy) {
     *energy = std::sqrt(*energy * footprint_sum);
   };
-  convert(&outcome.result.fit.energy);
-  convert(&outcome.energy_start);
-  for (TraceStep& step : outcome.result.trace) convert(&step.energy);
-  return outcome;
+  convert(&result.fit.energy);
+  convert(&result.report.energy_start);
+  for (TraceStep& step : result.report.trace) convert(&step.energy);
+  return result;
 }
 
-absl::StatusOr<SearchOutcome> SearchInMetric(const SearchInputs& inputs,
-                                             MapSize map,
-                                             const SearchOptions& options) {
+absl::StatusOr<SearchResult> SearchInMetric(const SearchInputs& inputs,
+                                            MapSize map,
+                                            const SearchOptions& options,
+                                            SearchEffort effort) {
   const bool is_l1 = IsL1(options.metric) && inputs.summary.counts.used > 0;
   if (is_l1 && inputs.samples != nullptr) return SearchL1(inputs, map, options);
-  absl::StatusOr<SearchOutcome> outcome = SearchSquares(inputs, inputs.summary, map, options);
-  if (!outcome.ok()) return outcome;
-  if (inputs.to_the_end && Polishes(options)) {
-    PolishExactly(inputs.summary, map, options, &*outcome);
+  absl::StatusOr<SearchResult> result = SearchSquares(inputs, inputs.summary, map, options);
+  if (!result.ok()) return result;
+  if (effort == SearchEffort::kToTheEnd && Polishes(options)) {
+    PolishExactly(inputs.summary, map, options, &*result);
   }
-  if (!is_l1) return outcome;
-  return AsFootprintSums(*std::move(outcome), inputs.summary.footprint_sum);
+  if (!is_l1) return result;
+  return AsFootprintSums(*std::move(result), inputs.summary.footprint_sum);
 }
 
 }  // namespace
@@ -222,13 +219,14 @@ AffineProblem MakeAffineProblem(const Summary& summary, MapSize map, const Searc
   return problem;
 }
 
-absl::StatusOr<SearchOutcome> SearchAxis(const SearchInputs& inputs,
-                                         MapSize map,
-                                         const SearchOptions& options) {
-  absl::StatusOr<SearchOutcome> outcome = SearchInMetric(inputs, map, options);
+absl::StatusOr<SearchResult> SearchAxis(const SearchInputs& inputs,
+                                        MapSize map,
+                                        const SearchOptions& options,
+                                        SearchEffort effort) {
+  absl::StatusOr<SearchResult> result = SearchInMetric(inputs, map, options, effort);
   // Whatever it is, it may be that because no more axes could be used.
   if (absl::Status status = CheckStop(inputs.light); !status.ok()) return status;
-  return outcome;
+  return result;
 }
 
 }  // namespace lightfit

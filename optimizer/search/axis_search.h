@@ -5,8 +5,6 @@
 // Out:  the best fitted map, where the search began, the trace.   math.md 4 and 6
 #pragma once
 
-#include <string>
-
 #include "absl/status/statusor.h"
 #include "geometry/light.h"
 #include "geometry/map_size.h"
@@ -14,28 +12,24 @@
 #include "optimizer/readback/samples.h"
 #include "optimizer/readback/surfaces.h"
 #include "optimizer/search/affine.h"
-#include "optimizer/search/line_search.h"
+#include "optimizer/search/search_result.h"
 #include "optimizer/search/search_options.h"
 
 namespace lightfit {
 
-// What one light's fit works on. `samples` and `receivers` are null when only a summary is known.
+// What one light's search works on. `samples` and `surfaces` are null when only a summary is known.
 struct SearchInputs {
   const Light& light;
   const Summary& summary;
   const Samples* samples = nullptr;
-  const Receivers* receivers = nullptr;
-
-  // Whether to polish to the end of what double precision tells (Polish::kExact), so that the
-  // result does not depend on how a summary came about. From a summary alone.
-  bool to_the_end = false;
+  const Surfaces* surfaces = nullptr;
 };
 
-struct SearchOutcome {
-  SearchResult result;
-  double energy_start = 0.0;
-  int evaluations = 0;
-  std::string solver_report;
+// How far the global and the refined search go.
+enum class SearchEffort {
+  kUsual,
+  kToTheEnd  // of what double precision tells (Polish::kExact), so that the result does not depend
+             // on how a summary came about; from a summary alone
 };
 
 // What the affine part is fitted for, as the options ask.
@@ -44,8 +38,9 @@ AffineProblem MakeAffineProblem(const Summary& summary, MapSize map, const Searc
 // Runs SearchOptions::search in SearchOptions::metric. The L1 metrics follow it on reweighted
 // samples; from a summary alone they take the weights that are in it (Summary::footprint_sum).
 // FailedPrecondition when no axis can be used; CancelledError once a StopScope says so.
-absl::StatusOr<SearchOutcome> SearchAxis(const SearchInputs& inputs,
-                                         MapSize map,
-                                         const SearchOptions& options);
+absl::StatusOr<SearchResult> SearchAxis(const SearchInputs& inputs,
+                                        MapSize map,
+                                        const SearchOptions& options,
+                                        SearchEffort effort = SearchEffort::kUsual);
 
 }  // namespace lightfit

@@ -64,10 +64,10 @@ SearchResult GlobalSearch(const Summary& summary,
                           AxisEvaluator& evaluator,
                           const AffineFit& start,
                           int grid_directions,
-                          Refiner refiner,
-                          std::string* solver_report) {
+                          Refiner refiner) {
   SearchResult result;
-  result.trace.push_back({"start", evaluator.num_evaluations(), start.energy});
+  result.report.energy_start = start.energy;
+  result.report.trace.push_back({"start", evaluator.num_evaluations(), start.energy});
 
   ScratchVector<AffineFit> candidates = {start};
   const auto consider = [&](const Eigen::Vector2d& ab) {
@@ -83,26 +83,27 @@ SearchResult GlobalSearch(const Summary& summary,
   }
   candidates = SelectCandidates(candidates);
   result.fit = candidates.front();
-  result.trace.push_back({"grid", evaluator.num_evaluations(), result.fit.energy});
+  result.report.trace.push_back({"grid", evaluator.num_evaluations(), result.fit.energy});
 
   int evaluations = evaluator.num_evaluations();
   ScratchVector<AffineFit> refined_fits;
   for (const AffineFit& candidate : candidates) {
-    RefineResult refined =
+    SearchResult refined =
         RefineAxis(summary, evaluator.problem(), evaluator.min_w(), refiner, candidate);
-    evaluations += refined.evaluations;
-    if (refined.fit.energy < result.fit.energy || solver_report->empty()) {
-      *solver_report = refined.report;
+    evaluations += refined.report.evaluations;
+    std::string& solver_report = result.report.solver_report;
+    if (refined.fit.energy < result.fit.energy || solver_report.empty()) {
+      solver_report = std::move(refined.report.solver_report);
     }
     if (refined.fit.energy < result.fit.energy) result.fit = refined.fit;
     refined_fits.push_back(refined.fit);
   }
-  result.trace.push_back({"refine", evaluations, result.fit.energy});
+  result.report.trace.push_back({"refine", evaluations, result.fit.energy});
 
   const auto polish = [&](Polish thoroughness, const AffineFit& fit) {
-    const RefineResult polished =
+    const SearchResult polished =
         PolishAxis(summary, evaluator.problem(), evaluator.min_w(), thoroughness, fit);
-    evaluations += polished.evaluations;
+    evaluations += polished.report.evaluations;
     if (polished.fit.energy < result.fit.energy) result.fit = polished.fit;
   };
   // What is far behind after Ceres does not catch up.
@@ -111,7 +112,8 @@ SearchResult GlobalSearch(const Summary& summary,
     if (fit.energy <= limit && refined_fits.size() > 1) polish(Polish::kQuick, fit);
   }
   polish(Polish::kThorough, AffineFit(result.fit));
-  result.trace.push_back({"polish", evaluations, result.fit.energy});
+  result.report.trace.push_back({"polish", evaluations, result.fit.energy});
+  result.report.evaluations = evaluations;
   return result;
 }
 

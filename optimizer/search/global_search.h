@@ -5,8 +5,6 @@
 // Out:  the best fit found, never worse than the start, and the trace.   math.md 6
 #pragma once
 
-#include <string>
-
 #include "optimizer/search/axis_evaluator.h"
 #include "optimizer/search/line_search.h"
 
@@ -19,7 +17,6 @@ SearchResult GlobalSearch(const Summary& summary,
                           AxisEvaluator& evaluator,
                           const AffineFit& start,
                           int grid_directions,
-                          Refiner refiner,
-                          std::string* solver_report);
+                          Refiner refiner);
 
 }  // namespace lightfit

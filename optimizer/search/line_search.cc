@@ -10,8 +10,9 @@ namespace lightfit {
 SearchResult RotationLineSearch(AxisEvaluator& evaluator, const AffineFit& start, int rounds) {
   SearchResult result;
   result.fit = start;
-  result.trace.push_back({"start", evaluator.num_evaluations(), start.energy});
-  result.stop_reason = StopReason::kRoundLimit;
+  result.report.energy_start = start.energy;
+  result.report.trace.push_back({"start", evaluator.num_evaluations(), start.energy});
+  result.report.stop_reason = StopReason::kRoundLimit;
 
   // Axes are covectors: p' = N^-T p, and so dE/dp = N^-1 dE/dp'.
   const Eigen::Matrix3d normalized_from_space =
@@ -27,7 +28,7 @@ SearchResult RotationLineSearch(AxisEvaluator& evaluator, const AffineFit& start
             .normalized();
     const Eigen::Vector3d rotation_axis = axis.cross(-gradient).normalized();
     if (!rotation_axis.allFinite() || rotation_axis.norm() < 0.5) {
-      result.stop_reason = StopReason::kConverged;  // no slope left to turn along
+      result.report.stop_reason = StopReason::kConverged;  // no slope left to turn along
       break;
     }
     bool improved = false;
@@ -41,11 +42,12 @@ SearchResult RotationLineSearch(AxisEvaluator& evaluator, const AffineFit& start
       improved = true;
     }
     if (!improved) {
-      result.stop_reason = StopReason::kConverged;
+      result.report.stop_reason = StopReason::kConverged;
       break;
     }
-    result.trace.push_back({"line_search", evaluator.num_evaluations(), result.fit.energy});
+    result.report.trace.push_back({"line_search", evaluator.num_evaluations(), result.fit.energy});
   }
+  result.report.evaluations = evaluator.num_evaluations();
   return result;
 }
 

@@ -175,12 +175,12 @@ AffineFit SearchSquaresAround(const ReducedEnergyCost& cost, AffineFit best) {
 
 }  // namespace
 
-RefineResult PolishAxis(const Summary& summary,
+SearchResult PolishAxis(const Summary& summary,
                         const AffineProblem& problem,
                         double min_w,
                         Polish polish,
                         const AffineFit& start) {
-  RefineResult result;
+  SearchResult result;
   result.fit = start;
   const ReducedEnergyCost cost(summary, problem, min_w, start.energy);
   const Effort& effort = polish == Polish::kQuick      ? kQuickEffort
@@ -195,7 +195,7 @@ RefineResult PolishAxis(const Summary& summary,
     if (point.has_value() && point->fit.energy < result.fit.energy) result.fit = point->fit;
   }
   if (polish == Polish::kExact) result.fit = SearchSquaresAround(cost, result.fit);
-  result.evaluations = cost.num_evaluations();
+  result.report.evaluations = cost.num_evaluations();
   return result;
 }
 

@@ -21,7 +21,7 @@ enum class Polish {
 };
 
 // Never returns a fit with more energy than `start`.
-RefineResult PolishAxis(const Summary& summary,
+SearchResult PolishAxis(const Summary& summary,
                         const AffineProblem& problem,
                         double min_w,
                         Polish polish,

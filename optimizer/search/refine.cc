@@ -1,6 +1,5 @@
 #include "optimizer/search/refine.h"
 
-#include <ceres/ceres.h>
 #include <ceres/tiny_solver.h>
 
 #include <Eigen/Cholesky>
@@ -10,15 +9,12 @@
 #include <cmath>
 
 #include "base/stop.h"
+#include "optimizer/search/refine_ceres.h"
 
 namespace lightfit {
 
 namespace {
 
-// Steps and gains (relative to the start's energy) below which refinement ends.
-constexpr double kStepTolerance = 1e-5;
-constexpr double kEnergyTolerance = 1e-5;
-constexpr int kMaxIterations = 8;
 constexpr double kUnusableResidual = 1e3;
 
 // Derivative of a row h over p, 3x3, from the rays that its strip touches: each gives one equation
@@ -44,35 +40,6 @@ Eigen::Matrix3d RowDerivative(const StripContacts& contacts,
   }
   return rays.inverse() * right_side;
 }
-
-class CeresCost final : public ceres::SizedCostFunction<18, 2> {
- public:
-  explicit CeresCost(const ReducedEnergyCost& cost) : cost_(cost) {}
-
-  bool Evaluate(double const* const* parameters,
-                double* residuals,
-                double** jacobians) const override {
-    Eigen::Matrix<double, 18, 2> jacobian;
-    const bool wanted = jacobians != nullptr && jacobians[0] != nullptr;
-    if (!cost_(parameters[0], residuals, wanted ? jacobian.data() : nullptr)) return false;
-    if (wanted) {  // Ceres wants it row-major
-      Eigen::Map<Eigen::Matrix<double, 18, 2, Eigen::RowMajor>> row_major(jacobians[0]);
-      row_major = jacobian;
-    }
-    return true;
-  }
-
- private:
-  const ReducedEnergyCost& cost_;
-};
-
-// Ceres would log a cost that fails at a point it has accepted, so that it is stopped from here.
-class StopCallback final : public ceres::IterationCallback {
- public:
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary& /*summary*/) override {
-    return StopRequested() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
-  }
-};
 
 }  // namespace
 
@@ -212,12 +179,12 @@ bool ReducedEnergyCost::operator()(const double* ab, double* residuals, double* 
   return true;
 }
 
-RefineResult RefineAxis(const Summary& summary,
+SearchResult RefineAxis(const Summary& summary,
                         const AffineProblem& problem,
                         double min_w,
                         Refiner refiner,
                         const AffineFit& start) {
-  RefineResult result;
+  SearchResult result;
   result.fit = start;
   // Ceres aborts on parameters that are not finite; a start without energy has nothing to refine.
   Eigen::Vector2d parameters = AxisParameters(start);
@@ -228,33 +195,19 @@ RefineResult RefineAxis(const Summary& summary,
   const ReducedEnergyCost cost(summary, problem, min_w, start.energy, refiner != Refiner::kCeres);
   if (!cost.FitAt(parameters).has_value()) return result;
 
+  constexpr RefineLimits kLimits;
   if (refiner == Refiner::kTinySolver) {
     ceres::TinySolver<ReducedEnergyCost> solver;
-    solver.options.max_num_iterations = kMaxIterations;
-    solver.options.function_tolerance = kEnergyTolerance;
-    solver.options.parameter_tolerance = kStepTolerance;
+    solver.options.max_num_iterations = kLimits.max_iterations;
+    solver.options.function_tolerance = kLimits.energy_tolerance;
+    solver.options.parameter_tolerance = kLimits.step_tolerance;
     solver.Solve(cost, &parameters);
   } else {
-    CeresCost ceres_cost(cost);
-    ceres::Problem::Options problem_options;
-    problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    ceres::Problem ceres_problem(problem_options);
-    ceres_problem.AddResidualBlock(&ceres_cost, nullptr, parameters.data());
-    ceres::Solver::Options options;
-    options.linear_solver_type = ceres::DENSE_QR;
-    options.max_num_iterations = kMaxIterations;
-    options.function_tolerance = kEnergyTolerance;
-    options.parameter_tolerance = kStepTolerance;
-    options.logging_type = ceres::SILENT;
-    StopCallback stop_callback;
-    options.callbacks = {&stop_callback};
-    ceres::Solver::Summary ceres_summary;
-    ceres::Solve(options, &ceres_problem, &ceres_summary);
-    result.report = ceres_summary.BriefReport();
+    result.report.solver_report = SolveWithCeres(cost, kLimits, &parameters);
   }
   const std::optional<AffineFit> refined = cost.FitAt(parameters);
   if (refined.has_value() && refined->energy < start.energy) result.fit = *refined;
-  result.evaluations = cost.num_evaluations();
+  result.report.evaluations = cost.num_evaluations();
   return result;
 }
 

@@ -15,10 +15,10 @@
 #include <Eigen/Core>
 #include <array>
 #include <optional>
-#include <string>
 
 #include "optimizer/energy/summary.h"
 #include "optimizer/search/affine.h"
+#include "optimizer/search/search_result.h"
 
 namespace lightfit {
 
@@ -68,14 +68,8 @@ class ReducedEnergyCost {
 // (a, b) of a fit's axis.
 Eigen::Vector2d AxisParameters(const AffineFit& fit);
 
-struct RefineResult {
-  AffineFit fit;
-  int evaluations = 0;
-  std::string report;  // Refiner::kCeres only
-};
-
 // Never returns a fit with more energy than `start`.
-RefineResult RefineAxis(const Summary& summary,
+SearchResult RefineAxis(const Summary& summary,
                         const AffineProblem& problem,
                         double min_w,
                         Refiner refiner,

@@ -4,6 +4,7 @@
 
 #include "absl/strings/str_format.h"
 #include "geometry/enclosing_rectangle.h"
+#include "optimizer/search/refine_ceres.h"
 
 namespace lightfit {
 
@@ -48,6 +49,11 @@ absl::Status ValidateSearchOptions(const SearchOptions& options) {
       options.search != Search::kRotationLineSearch) {
     return absl::InvalidArgumentError(
         "options.sample_by_sample: only kFocused and kRotationLineSearch run sample by sample");
+  }
+  if (options.refiner == Refiner::kCeres && !HasCeres()) {
+    return absl::UnimplementedError(
+        "options.refiner = kCeres: this build has no Ceres (LIGHTFIT_WITH_CERES=OFF); take "
+        "kTinySolver, which minimises the same cost");
   }
   if (options.affine == Affine::kMinAreaRectangleCgal) {
     const Polygon triangle = {{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}};

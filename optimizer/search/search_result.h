@@ -3,6 +3,7 @@
 // What a search for the axis ends with: the best map, how it was found, and why the search stopped.
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include "base/scratch.h"
@@ -27,10 +28,20 @@ struct TraceStep {
   double energy = 0;
 };
 
+// How a search went.
+struct SearchReport {
+  double energy_start = 0.0;  // where it began; what it ends with never exceeds it
+  StopReason stop_reason = StopReason::kConverged;
+  int evaluations = 0;  // of maps
+  ScratchVector<TraceStep> trace;
+  std::string solver_report;  // Ceres' own words, Refiner::kCeres only
+};
+
+// What every station of the search returns; those that only go on from a start leave
+// `energy_start` and `trace` alone.
 struct SearchResult {
   AffineFit fit;
-  ScratchVector<TraceStep> trace;
-  StopReason stop_reason = StopReason::kConverged;
+  SearchReport report;
 };
 
 }  // namespace lightfit

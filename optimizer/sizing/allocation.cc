@@ -111,24 +111,6 @@ std::vector<size_t> ChooseSizes(absl::Span<const std::vector<RatedSize>> sizes,
   return chosen;
 }
 
-std::vector<RatedSize> RateSizes(const MapShapes& shapes,
-                                 double weight,
-                                 const MapSizeRules& rules) {
-  constexpr size_t kMaxUnsorted = 1 << 14;  // a millisecond or two
-  const std::vector<int> sides = AllowedSides(rules);
-  std::vector<RatedSize> sizes;
-  for (const int height : sides) {
-    for (const int width : sides) {
-      if (width < height) continue;
-      const MapSize map = {width, height};
-      sizes.push_back({map, TexelsOf(map), weight * shapes.Energy(width, height)});
-    }
-    if (StopRequested()) break;
-    if (sizes.size() > kMaxUnsorted) sizes = WorthwhileSizes(std::move(sizes));
-  }
-  return WorthwhileSizes(std::move(sizes));
-}
-
 absl::StatusOr<Allocation> AllocateBudget(absl::Span<const AllocationLight> lights,
                                           int64_t budget_texels,
                                           const MapSizeRules& rules,
@@ -189,7 +171,7 @@ absl::StatusOr<Allocation> AllocateBudget(absl::Span<const AllocationLight> ligh
     map.matrix = Fit(*light.summary, light.light, size.map, options);
     if (!map.matrix.ok()) continue;
     allocation.texels += size.texels;
-    allocation.energy += light.weight * map.matrix->energy;
+    allocation.energy += light.weight * map.matrix->figures.energy;
     allocation.ideal_energy += light.weight * map.ideal_energy;
   }
   if (absl::Status status = CheckStop(kSubject); !status.ok()) return status;

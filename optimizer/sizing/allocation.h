@@ -83,11 +83,4 @@ std::vector<double> SplitTexels(absl::Span<const double> factors,
 std::vector<size_t> ChooseSizes(absl::Span<const std::vector<RatedSize>> sizes,
                                 int64_t budget_texels);
 
-// The sizes that keep the rules and are worth their texels, each with MapShapes::Energy times
-// `weight` as its cost.
-struct MapShapes;
-std::vector<RatedSize> RateSizes(const MapShapes& shapes,
-                                 double weight,
-                                 const MapSizeRules& rules);
-
 }  // namespace lightfit

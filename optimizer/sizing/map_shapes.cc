@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_format.h"
 #include "base/stop.h"
+#include "optimizer/energy/reweighting.h"
 #include "optimizer/fit.h"
 #include "optimizer/light_view.h"
 #include "optimizer/search/axis_search.h"
@@ -36,9 +37,9 @@ absl::StatusOr<MapShape> FitShape(const Summary& summary,
                                   const Light& light,
                                   MapSize map,
                                   const FitOptions& options) {
-  const absl::StatusOr<SearchOutcome> outcome = SearchAxis({light, summary}, map, options);
-  if (!outcome.ok()) return outcome.status();
-  const Eigen::Matrix3d& map_from_ray = outcome->result.fit.map_from_ray;
+  const absl::StatusOr<SearchResult> result = SearchAxis({light, summary}, map, options);
+  if (!result.ok()) return result.status();
+  const Eigen::Matrix3d& map_from_ray = result->fit.map_from_ray;
   const Eigen::Matrix<double, 3, 2> r = map_from_ray.inverse().leftCols<2>();
   const Eigen::Matrix3d metric = summary.tensor.AtAxis(map_from_ray.row(2));
   const double inner_width = map.width - 2.0 * options.margin_texels;
@@ -113,29 +114,57 @@ absl::StatusOr<MapShapes> FindMapShapes(const Summary& summary,
   return result;
 }
 
+std::vector<RatedSize> RateSizes(const MapShapes& shapes,
+                                 double weight,
+                                 const MapSizeRules& rules) {
+  constexpr size_t kMaxUnsorted = 1 << 14;  // a millisecond or two
+  const std::vector<int> sides = AllowedSides(rules);
+  std::vector<RatedSize> sizes;
+  for (const int height : sides) {
+    for (const int width : sides) {
+      if (width < height) continue;
+      const MapSize map = {width, height};
+      sizes.push_back({map, TexelsOf(map), weight * shapes.Energy(width, height)});
+    }
+    if (StopRequested()) break;
+    if (sizes.size() > kMaxUnsorted) sizes = WorthwhileSizes(std::move(sizes));
+  }
+  return WorthwhileSizes(std::move(sizes));
+}
+
+absl::StatusOr<Summary> SummarizeForAnyAspect(const LightView& view, const FitOptions& options) {
+  const Light& light = *view.light;
+  absl::StatusOr<Summary> summary = Summarize(view, options);
+  if (!summary.ok() || !IsL1(options.metric) || summary->counts.used == 0) return summary;
+  absl::StatusOr<MapShapes> shapes = FindMapShapes(*summary, light, options);
+  if (absl::Status status = CheckStop(light); !status.ok()) return status;
+  if (!shapes.ok()) return summary;
+  BestOfRounds<Summary> best(kLeastReweightingGain);
+  best.Offer(shapes->UnitEnergy(), *summary);
+  for (int round = 0; round < options.reweighting_rounds; ++round) {
+    const absl::StatusOr<LightMatrix> fit =
+        FitMatrix({light, best.Best()}, shapes->BestMap(), options);
+    if (!fit.ok()) break;
+    absl::StatusOr<Summary> next = SummarizeInMap(view, fit->map_from_world, options);
+    if (!next.ok()) break;
+    shapes = FindMapShapes(*next, light, options);
+    if (!shapes.ok() || !best.Offer(shapes->UnitEnergy(), *std::move(next))) break;
+  }
+  if (absl::Status status = CheckStop(light); !status.ok()) return status;
+  return std::move(best).Best();
+}
+
 absl::StatusOr<Summary> SummarizeForAnyAspect(const Readback& readback,
                                               const Light& light,
                                               const FitOptions& options) {
-  absl::StatusOr<Summary> summary = Summarize(readback, light, options);
-  if (!summary.ok() || !IsL1(options.metric) || summary->counts.used == 0) return summary;
-  absl::StatusOr<MapShapes> shapes = FindMapShapes(*summary, light, options);
-  for (int round = 0; round < options.reweighting_rounds && shapes.ok(); ++round) {
-    const absl::StatusOr<LightMatrix> best =
-        FitInputs({light, *summary}, shapes->BestMap(), options);
-    if (!best.ok()) break;
-    absl::StatusOr<Summary> next = SummarizeInMap(readback, light, best->map_from_world, options);
-    if (!next.ok()) break;
-    absl::StatusOr<MapShapes> next_shapes = FindMapShapes(*next, light, options);
-    if (!next_shapes.ok()) break;
-    const bool gained =
-        next_shapes->UnitEnergy() < shapes->UnitEnergy() * (1.0 - kLeastReweightingGain);
-    if (next_shapes->UnitEnergy() >= shapes->UnitEnergy()) break;
-    summary = std::move(next);
-    shapes = std::move(next_shapes);
-    if (!gained) break;
-  }
-  if (absl::Status status = CheckStop(light); !status.ok()) return status;
-  return summary;
+  if (absl::Status status = ValidateFitOptions(options); !status.ok()) return status;
+  if (absl::Status status = ValidateLight(light); !status.ok()) return status;
+  const absl::StatusOr<Surfaces> surfaces =
+      FindSurfaces(readback, LightMask(absl::MakeConstSpan(&light, 1)), options.samples);
+  if (!surfaces.ok()) return surfaces.status();
+  const absl::StatusOr<LightView> view = ViewLight(*surfaces, light, options);
+  if (!view.ok()) return view.status();
+  return SummarizeForAnyAspect(*view, options);
 }
 
 }  // namespace lightfit

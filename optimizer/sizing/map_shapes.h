@@ -23,7 +23,9 @@
 #include "geometry/map_size.h"
 #include "optimizer/energy/summary.h"
 #include "optimizer/fit_options.h"
+#include "optimizer/light_view.h"
 #include "optimizer/readback/readback.h"
+#include "optimizer/sizing/map_sizes.h"
 
 namespace lightfit {
 
@@ -60,9 +62,16 @@ absl::StatusOr<MapShapes> FindMapShapes(const Summary& summary,
                                         const Light& light,
                                         const FitOptions& options);
 
+// The sizes that keep the rules and are worth their texels, each with MapShapes::Energy times
+// `weight` as its cost.
+std::vector<RatedSize> RateSizes(const MapShapes& shapes,
+                                 double weight,
+                                 const MapSizeRules& rules);
+
 // Summarize() with maps of any aspect in mind: for the L1 metrics the samples weigh what they do in
 // the light's best map of all aspects, found by weighing and fitting in turn, where Summarize()
 // takes the best square one. Neither step raises UnitEnergy(). For the other metrics the same.
+absl::StatusOr<Summary> SummarizeForAnyAspect(const LightView& view, const FitOptions& options);
 absl::StatusOr<Summary> SummarizeForAnyAspect(const Readback& readback,
                                               const Light& light,
                                               const FitOptions& options);

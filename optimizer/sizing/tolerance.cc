@@ -14,6 +14,7 @@
 #include "geometry/homography.h"
 #include "geometry/map_size.h"
 #include "optimizer/energy/footprint.h"
+#include "optimizer/energy/reweighting.h"
 #include "optimizer/fit.h"
 #include "optimizer/light_view.h"
 #include "optimizer/sizing/allocation.h"
@@ -93,52 +94,48 @@ ScratchVector<double> Reweighted(Reweighting reweighting,
 // The summary whose least sum of squares brings the figure lowest in maps of this shape, of a few
 // rounds' weights.
 absl::StatusOr<Summary> SummaryFor(Tolerance::Kind kind,
-                                   const PreparedLight& prepared,
-                                   const Light& light,
+                                   const LightView& view,
+                                   const Summary& unweighted,
                                    MapSize map,
                                    const FitOptions& options) {
   constexpr int kRounds = 12;
-  Summary best = prepared.summary;
-  double least = std::numeric_limits<double>::infinity();
+  const Light& light = *view.light;
+  BestOfRounds<Summary> best;
   // From squares towards the few; and from sums of footprints, the better start where 1 % of the
   // samples may be as bad as they like.
   for (const int rounds_towards_many : {0, kRounds / 2}) {
-    Samples samples = prepared.samples;
-    Summary summary = prepared.summary;
+    Samples samples = view.samples;
+    Summary summary = unweighted;
     for (int round = 0; round < kRounds; ++round) {
-      const absl::StatusOr<LightMatrix> fit = FitInputs({light, summary}, map, options);
+      const absl::StatusOr<LightMatrix> fit = FitMatrix({light, summary}, map, options);
       if (!fit.ok()) return fit.status();
       const absl::StatusOr<Eigen::Matrix3d> map_from_ray =
           MapFromNormalized(*fit, light, summary.cover);
       if (!map_from_ray.ok()) return map_from_ray.status();
       const ScratchVector<double> footprints = FootprintsOf(*map_from_ray, samples);
       const double figure = FigureOf(kind, footprints);
-      if (figure < least) {
-        least = figure;
-        best = summary;
-      }
+      best.Offer(figure, summary);
       const Reweighting reweighting =
           round < rounds_towards_many ? Reweighting::kTowardsMany : Reweighting::kTowardsFew;
       samples.weight = Reweighted(reweighting, samples.weight, footprints, figure);
-      summary =
-          SummarizeSamples(samples, prepared.summary.cover, prepared.summary.metric);
+      summary = SummarizeSamples(samples, unweighted.cover, unweighted.metric);
     }
   }
-  return best;
+  return std::move(best).Best();
 }
 
 // What to fit: the squares themselves for the root mean square; else the best weights for square
 // maps, which is what the largest are, and for maps of the aspect that squares like best.
 absl::StatusOr<std::vector<Summary>> SummariesFor(Tolerance::Kind kind,
-                                                  const PreparedLight& prepared,
-                                                  const Light& light,
+                                                  const LightView& view,
                                                   const FitOptions& options) {
-  if (kind == Tolerance::Kind::kRms) return std::vector<Summary>{prepared.summary};
-  const absl::StatusOr<MapShapes> shapes = FindMapShapes(prepared.summary, light, options);
+  const Summary unweighted = SummaryOfView(view, options);
+  if (kind == Tolerance::Kind::kRms) return std::vector<Summary>{unweighted};
+  const absl::StatusOr<MapShapes> shapes = FindMapShapes(unweighted, *view.light, options);
   if (!shapes.ok()) return shapes.status();
   std::vector<Summary> summaries;
   for (const MapSize map : {MapSize{4096, 4096}, shapes->BestMap()}) {
-    absl::StatusOr<Summary> summary = SummaryFor(kind, prepared, light, map, options);
+    absl::StatusOr<Summary> summary = SummaryFor(kind, view, unweighted, map, options);
     if (!summary.ok()) return summary.status();
     summaries.push_back(*std::move(summary));
   }
@@ -203,42 +200,57 @@ absl::Status ValidateTolerance(const Tolerance& tolerance) {
   return absl::OkStatus();
 }
 
+FitOptions ToleranceOptions(FitOptions options) {
+  options.metric = Metric::kL2;
+  return options;
+}
+
 absl::StatusOr<ToleranceMap> MeetTolerance(const Readback& readback,
                                            const Light& light,
                                            const Tolerance& tolerance,
                                            const MapSizeRules& rules,
                                            const FitOptions& options) {
-  FitOptions squares = options;
-  squares.metric = Metric::kL2;
+  const FitOptions squares = ToleranceOptions(options);
   if (absl::Status status = Validate(tolerance, rules, squares); !status.ok()) return status;
   if (absl::Status status = ValidateLight(light); !status.ok()) return status;
-  const absl::StatusOr<Receivers> receivers =
-      FindReceivers(readback, uint32_t{1} << light.shadow_bit, options.samples);
-  if (!receivers.ok()) return receivers.status();
-  const absl::StatusOr<PreparedLight> prepared = PrepareLight(*receivers, light, squares);
-  if (!prepared.ok()) return prepared.status();
+  const absl::StatusOr<Surfaces> surfaces =
+      FindSurfaces(readback, uint32_t{1} << light.shadow_bit, squares.samples);
+  if (!surfaces.ok()) return surfaces.status();
+  const absl::StatusOr<LightView> view = ViewLight(*surfaces, light, squares);
+  if (!view.ok()) return view.status();
+  return MeetTolerance(*view, tolerance, rules, squares);
+}
+
+absl::StatusOr<ToleranceMap> MeetTolerance(const LightView& view,
+                                           const Tolerance& tolerance,
+                                           const MapSizeRules& rules,
+                                           const FitOptions& options) {
+  const FitOptions squares = ToleranceOptions(options);
+  if (absl::Status status = Validate(tolerance, rules, squares); !status.ok()) return status;
+  if (!view.cover.ok()) return view.cover.status();
+  const Light& light = *view.light;
   const absl::StatusOr<std::vector<Summary>> summaries =
-      SummariesFor(tolerance.kind, *prepared, light, squares);
+      SummariesFor(tolerance.kind, view, squares);
   if (!summaries.ok()) return summaries.status();
 
   absl::StatusOr<ToleranceMap> best = absl::UnknownError("not tried");
   for (const Summary& summary : *summaries) {
     const auto try_size = [&](MapSize map) -> absl::StatusOr<ToleranceMap> {
-      absl::StatusOr<LightMatrix> matrix = FitInputs({light, summary}, map, squares);
+      absl::StatusOr<LightMatrix> matrix = FitMatrix({light, summary}, map, squares);
       if (!matrix.ok()) return matrix.status();
       const absl::StatusOr<Eigen::Matrix3d> map_from_ray =
           MapFromNormalized(*matrix, light, summary.cover);
       if (!map_from_ray.ok()) return map_from_ray.status();
       const ScratchVector<double> footprints =
-          FootprintsOf(*map_from_ray, prepared->samples);
+          FootprintsOf(*map_from_ray, view.samples);
       const double figure = tolerance.kind == Tolerance::Kind::kRms
-                                ? RmsOf(footprints, prepared->samples.weight)
+                                ? RmsOf(footprints, view.samples.weight)
                                 : FigureOf(tolerance.kind, footprints);
       if (options.compute_statistics) {
-        matrix->footprint =
-            ComputeFootprintStatistics(*map_from_ray, prepared->samples);
+        matrix->figures.footprint =
+            ComputeFootprintStatistics(*map_from_ray, view.samples);
         // Its rank is rounded there, where a promise counts up.
-        if (tolerance.kind == Tolerance::Kind::kP99) matrix->footprint.p99 = figure;
+        if (tolerance.kind == Tolerance::Kind::kP99) matrix->figures.footprint.p99 = figure;
       }
       if (absl::Status status = CheckStop(light); !status.ok()) return status;
       ToleranceMap trial;
@@ -268,10 +280,10 @@ absl::StatusOr<ToleranceMap> MeetTolerance(const Summary& summary,
         "squared footprints (Metric::kL2, --metric l2); for other tolerances give the read-back");
   }
   const auto try_size = [&](MapSize map) -> absl::StatusOr<ToleranceMap> {
-    absl::StatusOr<LightMatrix> matrix = FitInputs({light, summary}, map, options);
+    absl::StatusOr<LightMatrix> matrix = FitMatrix({light, summary}, map, options);
     if (!matrix.ok()) return matrix.status();
     ToleranceMap trial;
-    trial.reached_px = matrix->footprint.rms * tolerance.image_scale;
+    trial.reached_px = matrix->figures.footprint.rms * tolerance.image_scale;
     trial.num_samples = summary.counts.used;
     trial.matrix = *std::move(matrix);
     return trial;

@@ -20,6 +20,7 @@
 #include "optimizer/energy/summary.h"
 #include "optimizer/fit_options.h"
 #include "optimizer/light_matrix.h"
+#include "optimizer/light_view.h"
 #include "optimizer/readback/readback.h"
 #include "optimizer/sizing/map_sizes.h"
 
@@ -54,8 +55,16 @@ struct ToleranceMap {
   int64_t num_samples = 0;
 };
 
-// FitOptions::metric does not count. Errors are those of FitLight(), and InvalidArgument for a
+// A tolerance is about squared footprints, whatever FitOptions::metric says: the options with that
+// put right, which a view must be made with.
+FitOptions ToleranceOptions(FitOptions options);
+
+// Errors are those of FitLight(), and InvalidArgument for a
 // tolerance or rules that cannot be used. A tolerance out of reach of the largest map is a result.
+absl::StatusOr<ToleranceMap> MeetTolerance(const LightView& view,
+                                           const Tolerance& tolerance,
+                                           const MapSizeRules& rules,
+                                           const FitOptions& options = {});
 absl::StatusOr<ToleranceMap> MeetTolerance(const Readback& readback,
                                            const Light& light,
                                            const Tolerance& tolerance,

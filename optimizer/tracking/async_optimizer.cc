@@ -35,13 +35,11 @@ void Publish(const absl::StatusOr<TrackedMatrix>& result, FrameLight* light) {
   const bool ok = result.ok();
   light->map_from_world = ok ? result->matrix.map_from_world : Eigen::Matrix4d::Identity();
   light->map = ok ? result->matrix.map : MapSize();
-  light->energy = ok ? result->matrix.energy : 0.0;
+  light->energy = ok ? result->matrix.figures.energy : 0.0;
   light->action = ok ? result->action : TrackerAction::kFirst;
 }
 
-void Update(const Submission& submission,
-            Tracker* tracker,
-            FrameMatrices* matrices) {
+void Update(const Submission& submission, Tracker* tracker, FrameMatrices* matrices) {
   const FrameReadback& readback = submission.readback;
   const size_t num_lights = std::min(readback.lights.size(), size_t{kMaxLights});
   matrices->frame = readback.frame;

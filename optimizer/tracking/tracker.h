@@ -1,7 +1,7 @@
 // optimizer/tracking/tracker.h
 //
 // From frame to frame: keep each light's matrix, move it, or replace it.
-// In:   per frame a read-back (its Receivers) and the lights.
+// In:   per frame a read-back (or its Surfaces) and the lights.
 // Out:  per light the matrix for this frame, and what was done to it.   math.md 7
 //
 // A matrix that changes makes shadow edges crawl: texels move over surfaces that stand still. A
@@ -24,6 +24,7 @@
 #include "optimizer/light_matrix.h"
 #include "optimizer/readback/readback.h"
 #include "optimizer/readback/surfaces.h"
+#include "optimizer/tracking/keep_matrix.h"
 
 namespace lightfit {
 
@@ -62,30 +63,10 @@ struct TrackerOptions {
 
 absl::Status ValidateTrackerOptions(const TrackerOptions& options);
 
-enum class TrackerAction {
-  kFirst,     // there was no matrix of this light, or light, map size or options changed
-  kKept,      // the matrix of the frame before, but perhaps for its depth range
-  kShifted,   // ... by whole texels
-  kRelaid,    // the axis of the frame before, the affine part anew (Keeps::kAxis)
-  kReplaced,  // the fresh fit is better by enough
-  kInvalid    // replaced because what must be covered was not
-};
-
-const char* TrackerActionName(TrackerAction action);
-
 struct TrackedMatrix {
   LightMatrix matrix;  // its figures are those of this frame's samples
   TrackerAction action = TrackerAction::kFirst;
   int64_t frames_kept = 0;  // since texels last moved over surfaces, 0: in this frame
-};
-
-// What is remembered of one light, all there is to a tracker's state: write it down to go on later.
-struct TrackedState {
-  Light light;
-  MapSize map;
-  Eigen::Matrix4d map_from_world = Eigen::Matrix4d::Identity();
-  int64_t frames_kept = 0;
-  int64_t frames_since_update = 0;
 };
 
 // Element i belongs to light i. A ScratchVector, as LightMatrices.
@@ -109,12 +90,20 @@ class Tracker {
   // frame, once a StopScope says so.
   TrackedMatrices Update(const Readback& readback, absl::Span<const Light> lights, MapSize map);
 
+  // The same where the read-back's surfaces are known, of all these lights.
+  TrackedMatrices Update(const Surfaces& surfaces, absl::Span<const Light> lights, MapSize map);
+
   // To stop and go on in another process.
   const std::vector<TrackedState>& state() const { return states_; }
   void set_state(std::vector<TrackedState> states) { states_ = std::move(states); }
 
  private:
-  absl::StatusOr<TrackedMatrix> UpdateLight(const Receivers& receivers,
+  // `surfaces` may be null, where `status` says why.
+  TrackedMatrices Update(const Surfaces* surfaces,
+                         const absl::Status& status,
+                         absl::Span<const Light> lights,
+                         MapSize map);
+  absl::StatusOr<TrackedMatrix> UpdateLight(const Surfaces& surfaces,
                                             const Light& light,
                                             MapSize map,
                                             TrackedState* state) const;

@@ -205,7 +205,7 @@ absl::StatusOr<ReadbackExrOptions> ExrOptionsOf(const py::dict& fields) {
   options.camera_exr.convention = *parsed;
   int depth_kind_number = v1::DEPTH_KIND_UNSPECIFIED;
   Take(fields, "depth_kind", &depth_kind_number);
-  absl::StatusOr<absl::optional<DepthKind>> depth_kind =
+  absl::StatusOr<std::optional<DepthKind>> depth_kind =
       DepthKindFromProto(static_cast<v1::DepthKind>(depth_kind_number));
   if (!depth_kind.ok()) return depth_kind.status();
   if (!camera_bytes.empty()) {

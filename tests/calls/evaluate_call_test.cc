@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "optimizer/figures/evaluate.h"
+#include "optimizer/evaluate.h"
 #include "optimizer/fit.h"
 #include "tests/calls/requests.h"
 #include "tests/io/summary_examples.h"
@@ -48,7 +48,7 @@ v1::EvaluateRequest RequestFor(const Readback& readback, const std::vector<Light
 
 v1::EvaluateRequest YardRequest() { return RequestFor(Yard().file.View(), Yard().lights); }
 
-void ExpectFigures(const v1::Evaluation& evaluation, const MatrixFigures& figures) {
+void ExpectFigures(const v1::Evaluation& evaluation, const Figures& figures) {
   EXPECT_EQ(evaluation.status().code(), 0) << evaluation.status().message();
   EXPECT_EQ(evaluation.energy(), figures.energy);
   EXPECT_EQ(evaluation.footprint().SerializeAsString(),

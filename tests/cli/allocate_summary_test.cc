@@ -12,7 +12,7 @@
 #include "absl/strings/str_format.h"
 #include "io/lights_file.h"
 #include "io/readback_exr.h"
-#include "optimizer/figures/evaluate.h"
+#include "optimizer/evaluate.h"
 #include "tests/cli/allocations.h"
 #include "tests/cli/examples.h"
 #include "tests/cli/summaries.h"
@@ -229,7 +229,7 @@ TEST(AllocateSummary, AToleranceOfAShotHoldsForTheSamplesOfItsFrames) {
     for (const std::string& frame : frames) {
       const absl::StatusOr<ReadbackFile> file = ReadReadbackExr(frame, *lights);
       ASSERT_TRUE(file.ok()) << file.status();
-      const absl::StatusOr<MatrixFigures> figures =
+      const absl::StatusOr<Figures> figures =
           EvaluateMatrix(file->View(),
                          *light,
                          MatrixOf(found.map_from_world()),

@@ -26,7 +26,7 @@ constexpr double kMatrixTolerance = 1e-12;
 // only rounding can put one outside. Texels.
 constexpr double kCoverTolerance_texels = 1e-6;
 
-std::vector<Eigen::Vector3d> Receivers(const std::string& readback, const std::string& lights) {
+std::vector<Eigen::Vector3d> ReceiversOf(const std::string& readback, const std::string& lights) {
   const absl::StatusOr<std::vector<Light>> light_list = ReadLightsFile(lights);
   EXPECT_TRUE(light_list.ok()) << light_list.status();
   const absl::StatusOr<ReadbackFile> file = ReadReadbackExr(readback, *light_list);
@@ -52,7 +52,7 @@ TEST(FitJson, WritesMatricesThatCoverTheReceivers) {
                                             json});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const v1::FitResult fit = ReadResult(json);
-  const std::vector<Eigen::Vector3d> receivers = Receivers(kYard, kYardLights);
+  const std::vector<Eigen::Vector3d> receivers = ReceiversOf(kYard, kYardLights);
   ASSERT_GT(receivers.size(), 1000u);
   ASSERT_EQ(fit.lights_size(), 3);
   for (const v1::LightResult& light : fit.lights()) {

@@ -9,7 +9,7 @@
 #include "absl/strings/str_split.h"
 #include "io/readback_exr.h"
 #include "optimizer/energy/summary_total.h"
-#include "optimizer/figures/evaluate.h"
+#include "optimizer/evaluate.h"
 #include "optimizer/figures/stability.h"
 #include "optimizer/fit.h"
 #include "optimizer/tracking/tracker.h"
@@ -122,7 +122,7 @@ TEST(Shot, FiguresOfAllModesAreByOneMeasure) {
       const Light& light = shot.lights()[i];
       const Eigen::Matrix4d map_before = MatrixOf(result_before.lights(i).map_from_world());
       const Eigen::Matrix4d map = MatrixOf(result.lights(i).map_from_world());
-      const absl::StatusOr<MatrixFigures> figures = EvaluateMatrix(readback, light, map, kMap);
+      const absl::StatusOr<Figures> figures = EvaluateMatrix(readback, light, map, kMap);
       ASSERT_TRUE(figures.ok()) << figures.status();
       EXPECT_EQ(result.lights(i).energies().final(), figures->energy);
       EXPECT_EQ(result.lights(i).footprint().p99(), figures->footprint.p99);

@@ -147,7 +147,7 @@ TEST(SummaryFile, FramesWithoutALightAreCountedAndTheFirstMessageKept) {
   const std::vector<std::string> names = {"0007.exr", "0003.exr", "0005.exr"};
   std::string expected;
   for (const std::vector<int>& order : {std::vector<int>{0, 1, 2, 3}, {3, 2, 1, 0}, {1, 3, 0, 2}}) {
-    absl::optional<SummarySet> sum;
+    std::optional<SummarySet> sum;
     for (const int i : order) {
       SummarySet set = SetOf(FrameOfYard(i), "whole.exr");
       if (i < 3) {

@@ -96,8 +96,8 @@ Reach ReachAtSamples(const Stage& stage,
   const FitOptions options;
   const Readback readback = stage.readback.View();
   const Eigen::Matrix4d screen_from_world = readback.camera.WorldFromScreen().inverse();
-  const absl::StatusOr<Receivers> receivers =
-      FindReceivers(readback, uint32_t{1} << light.shadow_bit, options.samples);
+  const absl::StatusOr<Surfaces> receivers =
+      FindSurfaces(readback, uint32_t{1} << light.shadow_bit, options.samples);
   EXPECT_TRUE(receivers.ok()) << receivers.status();
   const Samples samples =
       SelectSamples(*receivers, light, Eigen::Matrix3d::Identity(), /*with_edge_normals=*/false);

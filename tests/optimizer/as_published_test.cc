@@ -29,8 +29,8 @@ constexpr MapSize kMap = {512, 256};
 class Algorithm1 {
  public:
   Algorithm1(const Readback& readback, const Light& light) {
-    const Receivers receivers =
-        *FindReceivers(readback, 1u << light.shadow_bit, FitOptions::AsPublished().samples);
+    const Surfaces receivers =
+        *FindSurfaces(readback, 1u << light.shadow_bit, FitOptions::AsPublished().samples);
     samples_ = SelectSamples(receivers, light, Eigen::Matrix3d::Identity(), false);
     const std::vector<Eigen::Vector3d> positions = *ReceiverPositions(readback);
     for (const Eigen::Vector3d& position : positions) {

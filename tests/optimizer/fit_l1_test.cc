@@ -66,7 +66,7 @@ double Sum(const std::vector<double>& values) {
 double SlowTwin(const Readback& readback, const Light& light, const FitOptions& options) {
   constexpr int kRounds = 20;
   constexpr double kFloor = 0.02;  // of the mean footprint
-  const Receivers receivers = *FindReceivers(readback, 1u << light.shadow_bit, options.samples);
+  const Surfaces receivers = *FindSurfaces(readback, 1u << light.shadow_bit, options.samples);
   const RayCover cover = *CoverReceivers(receivers, light, options.cover);
   const MetricWeights metric = WeightsOf(options.metric, options.along_edge_share);
   Samples samples = SelectSamples(receivers, light, cover.normalized_from_ray, true);
@@ -151,7 +151,7 @@ TEST(FitLightL1, TraceHoldsEveryRoundAndTheBestIsReturned) {
 TEST(WeightsForL1, AreOneOverTheFootprintsDownToAFloor) {
   const TestScene scene(3, 3);
   for (const Light& light : scene.lights) {
-    const Receivers receivers = *FindReceivers(scene.View(), 1u << light.shadow_bit, {});
+    const Surfaces receivers = *FindSurfaces(scene.View(), 1u << light.shadow_bit, {});
     const RayCover cover = *CoverReceivers(receivers, light);
     Samples samples = SelectSamples(receivers, light, cover.normalized_from_ray, true);
     for (size_t i = 0; i < samples.size(); ++i) samples.weight[i] = 1.0 + 0.5 * (i % 3);

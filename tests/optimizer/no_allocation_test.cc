@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/scratch.h"
-#include "optimizer/figures/evaluate.h"
+#include "optimizer/evaluate.h"
 #include "optimizer/fit.h"
 #include "optimizer/tracking/tracker.h"
 #include "tests/testing/allocation_counter.h"
@@ -138,7 +138,7 @@ TEST(EvaluateMatrix, AllocatesNothingFromAWarmPool) {
     const ScratchScope scope(&pool);
     const int64_t before = NumAllocations();
     for (size_t i = 0; i < matrices.size(); ++i) {
-      const absl::StatusOr<MatrixFigures> figures =
+      const absl::StatusOr<Figures> figures =
           EvaluateMatrix(scene.View(), scene.lights[i], matrices[i]->map_from_world, kMap);
       ASSERT_TRUE(figures.ok()) << figures.status();
       EXPECT_GT(figures->energy, 0.0);

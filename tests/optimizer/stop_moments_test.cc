@@ -12,7 +12,7 @@
 
 #include "absl/strings/str_format.h"
 #include "base/stop.h"
-#include "optimizer/figures/evaluate.h"
+#include "optimizer/evaluate.h"
 #include "optimizer/fit.h"
 #include "optimizer/sizing/allocation.h"
 #include "optimizer/sizing/map_shapes.h"
@@ -59,7 +59,7 @@ std::string TextOf(const TrackedMatrix& tracked) {
 std::string TextOf(const ToleranceMap& map) {
   return absl::StrFormat("%d %a %s", map.is_met, map.reached_px, TextOf(map.matrix));
 }
-std::string TextOf(const MatrixFigures& figures) {
+std::string TextOf(const Figures& figures) {
   return absl::StrFormat("%a %a %a %a %d",
                          figures.energy,
                          figures.wrong_share,

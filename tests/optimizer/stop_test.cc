@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "optimizer/figures/evaluate.h"
+#include "optimizer/evaluate.h"
 #include "optimizer/figures/foretell.h"
 #include "optimizer/fit.h"
 #include "optimizer/light_view.h"
@@ -48,9 +48,9 @@ TEST(Stop, AskedForBeforehandEndsEveryCallOnAReadback) {
   const FitOptions options;
   const absl::StatusOr<LightMatrix> fit = FitLight(readback, light, kMap);
   ASSERT_THAT(fit, IsOk());
-  const absl::StatusOr<Receivers> receivers = FindReceivers(readback, ~0u, options.samples);
+  const absl::StatusOr<Surfaces> receivers = FindSurfaces(readback, ~0u, options.samples);
   ASSERT_THAT(receivers, IsOk());
-  const absl::StatusOr<PreparedLight> prepared = PrepareLight(*receivers, light, {});
+  const absl::StatusOr<LightView> prepared = ViewLight(*receivers, light, {});
   ASSERT_THAT(prepared, IsOk());
   const auto is_stopped = StatusIs(kCancelled, HasSubstr("stopped"));
   const StopScope stopped(Stopped());
@@ -70,14 +70,14 @@ TEST(Stop, AskedForBeforehandEndsEveryCallOnAReadback) {
     EXPECT_THAT(MeetTolerance(readback, light, {kind, 1.0, 1.0}, {}, options), is_stopped);
   }
 
-  EXPECT_THAT(FindReceivers(readback, ~0u, options.samples), is_stopped);
+  EXPECT_THAT(FindSurfaces(readback, ~0u, options.samples), is_stopped);
   const auto names_light = StatusIs(kCancelled, HasSubstr("light \"" + light.name + "\""));
   for (const Cover cover : {Cover::kReceivers, Cover::kShadowed}) {
     EXPECT_THAT(CoverReceivers(*receivers, light, cover), names_light);
   }
-  EXPECT_THAT(PrepareLight(*receivers, light, options), names_light);
+  EXPECT_THAT(ViewLight(*receivers, light, options), names_light);
   const SearchInputs inputs = {light, prepared->summary, &prepared->samples, &*receivers};
-  EXPECT_THAT(FitInputs(inputs, kMap, options), names_light);
+  EXPECT_THAT(FitMatrix(inputs, kMap, options), names_light);
   EXPECT_THAT(MatrixOfMap(inputs, Eigen::Matrix3d::Identity(), kMap, options), names_light);
   for (const Search search : {Search::kFocused,
                               Search::kRotationLineSearch,

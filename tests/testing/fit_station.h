@@ -50,7 +50,7 @@ inline std::vector<FitStation> FitStations(int num_scenes,
   std::vector<FitStation> stations;
   for (int seed = 1; seed <= num_scenes; ++seed) {
     const TestScene scene(seed, 6);
-    const Receivers receivers = *FindReceivers(scene.View(), 0x3f, SquaredFootprints().samples);
+    const Surfaces receivers = *FindSurfaces(scene.View(), 0x3f, SquaredFootprints().samples);
     for (const Light& light : scene.lights) {
       const absl::StatusOr<RayCover> cover = CoverReceivers(receivers, light);
       EXPECT_TRUE(cover.ok()) << cover.status();

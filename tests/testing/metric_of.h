@@ -29,7 +29,7 @@ inline double MetricOf(const LightMatrix& matrix,
                        const Readback& readback,
                        const Light& light,
                        const FitOptions& options) {
-  const Receivers receivers = *FindReceivers(readback, 1u << light.shadow_bit, options.samples);
+  const Surfaces receivers = *FindSurfaces(readback, 1u << light.shadow_bit, options.samples);
   const Samples samples = SelectSamples(receivers, light, Eigen::Matrix3d::Identity(), true);
   const Eigen::Matrix3d map_from_ray = MapFromRayOf(matrix, light);
   const bool across =

@@ -161,7 +161,7 @@ TEST(PooledCrawl, IsThatOfAllPointsTogether) {
   EXPECT_FALSE(PooledCrawl({}).has_value());
   MapCrawl still = CrawlOf(300, 0.0, 100, 0);
   still.points.moved_share = 0.0;
-  const absl::optional<MapCrawl> pooled = PooledCrawl({still, CrawlOf(100, 0.4, 300, 4)});
+  const std::optional<MapCrawl> pooled = PooledCrawl({still, CrawlOf(100, 0.4, 300, 4)});
   ASSERT_TRUE(pooled.has_value());
   EXPECT_EQ(pooled->points.num_points, 400);
   EXPECT_DOUBLE_EQ(pooled->points.phase_drift_texels, 0.2);
@@ -173,7 +173,7 @@ TEST(PooledCrawl, IsThatOfAllPointsTogether) {
 }
 
 TEST(PooledCrawl, TotalsCountTheLightsThatBothHave) {
-  const auto light = [](absl::optional<MapCrawl> focused, absl::optional<MapCrawl> lightfit) {
+  const auto light = [](std::optional<MapCrawl> focused, std::optional<MapCrawl> lightfit) {
     LightComparison comparison;
     comparison.light = kSun;
     for (auto& [name, crawl] : {std::pair("focused", focused), std::pair("lightfit", lightfit)}) {

@@ -154,7 +154,7 @@ TEST_F(CompareMapsTest, ImagesHoldTheWrongPixels) {
 
 TEST_F(CompareMapsTest, AGivenMatrixIsJudgedAsOurs) {
   const Eigen::Matrix4d ours = Compare(kSun).lightfit().map_from_world;
-  options_.given = {{"copy", ours, {}}, {"by name", absl::nullopt, {{"sun", ours}}}};
+  options_.given = {{"copy", ours, {}}, {"by name", std::nullopt, {{"sun", ours}}}};
   const LightComparison comparison = Compare(kSun);
   for (const char* name : {"copy", "by name"}) {
     const ComparedMap& copy = *comparison.Find(name);
@@ -171,7 +171,7 @@ TEST_F(CompareMapsTest, UnusableMatricesHaveARowThatSaysWhy) {
   not_finite(0, 0) = NAN;
   options_.given = {{"other sun", of_sun, {}},
                     {"not finite", not_finite, {}},
-                    {"none", absl::nullopt, {{"moon", of_sun}}}};
+                    {"none", std::nullopt, {{"moon", of_sun}}}};
   const LightComparison comparison = Compare(Light::Directional("lamp", {1, -1, 0.3}));
   EXPECT_THAT(comparison.Find("other sun")->status,
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("do not leave the light")));

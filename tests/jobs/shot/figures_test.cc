@@ -97,7 +97,7 @@ TEST_F(ThreeFrames, PlotHasTheColoursOfItsModes) {
 TEST(LineChart, AxisHoldsAllValues) {
   LineChart chart;
   chart.x = {1, 2, 3};
-  chart.lines = {{{2.0, absl::nullopt, 5.0}, {}, {}}, {{0.5, NAN, -3.0}, {}, {}}};
+  chart.lines = {{{2.0, std::nullopt, 5.0}, {}, {}}, {{0.5, NAN, -3.0}, {}, {}}};
   for (const bool log_y : {false, true}) {
     chart.log_y = log_y;
     const ChartAxis axis = AxisFor(chart);
@@ -134,7 +134,7 @@ TEST(LineChart, DrawsLonelyValues) {
   LineChart chart;
   chart.x = {1, 2, 3};
   const Rgb white = {1, 1, 1};
-  chart.lines = {{{absl::nullopt, 1.0, absl::nullopt}, {}, white}};
+  chart.lines = {{{std::nullopt, 1.0, std::nullopt}, {}, white}};
   Canvas canvas(400, 200, {});
   DrawLineChart(0, 0, 400, 200, chart, Typeface(), &canvas);
   const int x = (400 + kChartLabelWidth) / 2;
@@ -150,7 +150,7 @@ TEST(Csv, QuotesWhatHasToBe) {
   EXPECT_EQ(CsvField("a,b"), "\"a,b\"");
   EXPECT_EQ(CsvField("say \"a\"\nb"), "\"say \"\"a\"\" b\"");
   EXPECT_EQ(CsvNumber(0.1), "0.1");
-  EXPECT_EQ(CsvNumber(absl::optional<double>()), "");
+  EXPECT_EQ(CsvNumber(std::optional<double>()), "");
 }
 
 }  // namespace

@@ -42,8 +42,8 @@ struct TwoFrames {
 
 // The samples of one frame in the coordinates of any cover.
 Samples SamplesIn(const SyntheticReadback& frame, const Light& light, const RayCover& cover) {
-  const Receivers receivers =
-      *FindReceivers(frame.View(), 1u << light.shadow_bit, testing::SquaredFootprints().samples);
+  const Surfaces receivers =
+      *FindSurfaces(frame.View(), 1u << light.shadow_bit, testing::SquaredFootprints().samples);
   return SelectSamples(receivers, light, cover.normalized_from_ray, /*with_edge_normals=*/false);
 }
 

@@ -32,7 +32,7 @@ using testing::StatusIs;
 constexpr auto kFailedPrecondition = absl::StatusCode::kFailedPrecondition;
 
 // From the light to all pixels, or to those that are shadowed: world units.
-std::vector<Eigen::Vector3d> RaysOf(const Receivers& receivers, const Light& light, Cover which) {
+std::vector<Eigen::Vector3d> RaysOf(const Surfaces& receivers, const Light& light, Cover which) {
   const Readback& readback = receivers.readback;
   const Matrix34d ray_from_screen = RayFromWorld(light) * receivers.world_from_screen;
   std::vector<Eigen::Vector3d> rays;
@@ -51,7 +51,7 @@ std::vector<Eigen::Vector3d> RaysOf(const Receivers& receivers, const Light& lig
   return rays;
 }
 
-bool BoxesSurround(const Receivers& receivers, const DepthTiles& tiles, const Light& light) {
+bool BoxesSurround(const Surfaces& receivers, const DepthTiles& tiles, const Light& light) {
   const Matrix34d ray_from_screen = RayFromWorld(light) * receivers.world_from_screen;
   std::vector<Eigen::Vector3d> corners;
   ForEachTile(tiles.grids[0], {}, [&](const DepthTile& tile) {
@@ -94,7 +94,7 @@ TEST(CoverCloseBy, IsThatOfAllRaysTakenAtOnce) {
     const Cover which = i % 2 == 0 ? Cover::kShadowed : Cover::kReceivers;
     if (i % 4 == 1) lamp.RemoveLitFloor();  // else that is all around
     SCOPED_TRACE(i);
-    const Receivers receivers = *FindReceivers(lamp.readback.View(), ~0u, {});
+    const Surfaces receivers = *FindSurfaces(lamp.readback.View(), ~0u, {});
     const absl::StatusOr<RayCover> cover = CoverReceivers(receivers, lamp.light, which);
     const std::vector<Eigen::Vector3d> rays = RaysOf(receivers, lamp.light, which);
     const std::optional<Eigen::Vector3d> axis = FeasibleAxis(rays);
@@ -121,7 +121,7 @@ TEST(CoverCloseBy, LowestRayIsThatOfAllPixels) {
   for (int i = 0; i < 20; ++i) {
     HangingLamp lamp(random.Int(40, 150), random.Int(30, 90));
     lamp.light.position += random.LogUniform(1e-3, 10.0) * random.InCube(1.0);
-    const Receivers receivers = *FindReceivers(lamp.readback.View(), ~0u, {});
+    const Surfaces receivers = *FindSurfaces(lamp.readback.View(), ~0u, {});
     const Matrix34d ray_from_screen = RayFromWorld(lamp.light) * receivers.world_from_screen;
     const CoveredSurfaces covered = {receivers, receivers.tiles};
     const std::vector<Eigen::Vector3d> rays = RaysOf(receivers, lamp.light, Cover::kReceivers);
@@ -167,7 +167,7 @@ TEST(CoverCloseBy, TakesLittleMemory) {
   constexpr double kMostBytesPerPixel = 4.0;
   HangingLamp lamp(1280, 720);
   lamp.RemoveLitFloor();
-  const Receivers receivers = *FindReceivers(lamp.readback.View(), ~0u, {});
+  const Surfaces receivers = *FindSurfaces(lamp.readback.View(), ~0u, {});
   ASSERT_TRUE(BoxesSurround(receivers, receivers.tiles, lamp.light));
   PeakCounter counter;
   const ScratchScope scope(&counter);

@@ -54,7 +54,7 @@ void ForEachCover(const Check& check) {
   int num_covers = 0;
   for (uint64_t seed = 1; seed <= 8; ++seed) {
     const TestScene scene(seed, 6, 160, 100);
-    const Receivers receivers = *FindReceivers(scene.View(), 0x3f, {});
+    const Surfaces receivers = *FindSurfaces(scene.View(), 0x3f, {});
     for (const Light& light : scene.lights) {
       SCOPED_TRACE(light.name + ", seed " + std::to_string(seed));
       const std::vector<Surface> surfaces = SurfacesOf(scene.View(), light);
@@ -145,7 +145,7 @@ TEST(CoverShadowed, WithoutAnAreaOfShadowEveryReceiverIsCovered) {
   readbacks[3].Cast(2, [](int x, int y) { return x < 30 && y == 9; });
   for (size_t i = 0; i < readbacks.size(); ++i) {
     SCOPED_TRACE(i);
-    const Receivers receivers = *FindReceivers(readbacks[i].View(), 1u << 2, {});
+    const Surfaces receivers = *FindSurfaces(readbacks[i].View(), 1u << 2, {});
     for (const Light& light : {kSun, kLamp}) {
       const auto all = CoverReceivers(receivers, light, Cover::kReceivers);
       const auto shadowed = CoverReceivers(receivers, light, Cover::kShadowed);
@@ -160,7 +160,7 @@ TEST(CoverShadowed, WithoutAnAreaOfShadowEveryReceiverIsCovered) {
 TEST(CoverShadowed, OfAnImageAllInShadowIsThatOfAllReceivers) {
   PlaneReadback readback = FloorReadback();
   readback.Cast(2, [](int, int) { return true; });
-  const Receivers receivers = *FindReceivers(readback.View(), 1u << 2, {});
+  const Surfaces receivers = *FindSurfaces(readback.View(), 1u << 2, {});
   for (const Light& light : {kSun, kLamp}) {
     const auto all = CoverReceivers(receivers, light, Cover::kReceivers);
     const auto shadowed = CoverReceivers(receivers, light, Cover::kShadowed);
@@ -186,7 +186,7 @@ TEST(CoverShadowed, LightAmongReceiversHasAMapWhereItsShadowsLieToOneSide) {
     });
   };
   shadow_from(26);
-  const Receivers receivers = *FindReceivers(readback.View(), 1u << 2, {});
+  const Surfaces receivers = *FindSurfaces(readback.View(), 1u << 2, {});
   EXPECT_THAT(CoverReceivers(receivers, lamp, Cover::kReceivers),
               StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("light \"lamp\"")));
   const auto cover = CoverReceivers(receivers, lamp, Cover::kShadowed);

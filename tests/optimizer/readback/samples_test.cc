@@ -24,8 +24,8 @@ const Eigen::Matrix3d kLightSpace = Eigen::Matrix3d::Identity();
 SampleCounts CountSamples(const PlaneReadback& readback,
                           const Light& light,
                           const SampleOptions& options = FitOptions::AsPublished().samples) {
-  const absl::StatusOr<Receivers> receivers =
-      FindReceivers(readback.View(), 1u << light.shadow_bit, options);
+  const absl::StatusOr<Surfaces> receivers =
+      FindSurfaces(readback.View(), 1u << light.shadow_bit, options);
   EXPECT_THAT(receivers, IsOk());
   const Samples samples = SelectSamples(*receivers, light, kLightSpace, false);
   EXPECT_EQ(samples.counts.used, static_cast<int64_t>(samples.size()));
@@ -172,7 +172,7 @@ TEST(SelectSamples, CountsSurfacesEdgeOnToTheEye) {
 
 TEST(SelectSamples, LightAtAReceiverIsEdgeOnThere) {
   const PlaneReadback readback = FloorWithVerticalEdge();
-  const Receivers receivers = *FindReceivers(readback.View(), 1u, {});
+  const Surfaces receivers = *FindSurfaces(readback.View(), 1u, {});
   const Light lamp = Light::Point("lamp", receivers.boundary[5].position);
   const SampleCounts counts = CountSamples(readback, lamp);
   EXPECT_EQ(counts.used, 0);
@@ -191,7 +191,7 @@ TEST(SelectSamples, LooksAtItsOwnBitOnly) {
 
 TEST(SelectSamples, RaysPointFromTheLightToTheReceivers) {
   const PlaneReadback readback = FloorWithVerticalEdge();
-  const Receivers receivers = *FindReceivers(readback.View(), 1u, {});
+  const Surfaces receivers = *FindSurfaces(readback.View(), 1u, {});
   for (const Light& light : {kSun, Light::Point("lamp", {1.0, 2.0, 4.0})}) {
     const Samples samples = SelectSamples(receivers, light, kLightSpace, false);
     ASSERT_EQ(samples.size(), receivers.boundary.size());
@@ -205,7 +205,7 @@ TEST(SelectSamples, RaysPointFromTheLightToTheReceivers) {
 
 TEST(SelectSamples, KnowsEdgeNormalsOnlyWhenAsked) {
   const PlaneReadback readback = FloorWithVerticalEdge();
-  const Receivers with = *FindReceivers(readback.View(), 1u, {});
+  const Surfaces with = *FindSurfaces(readback.View(), 1u, {});
   EXPECT_FALSE(SelectSamples(with, kSun, kLightSpace, false).has_edge_normals());
   const Samples samples = SelectSamples(with, kSun, kLightSpace, true);
   ASSERT_TRUE(samples.has_edge_normals());

@@ -130,9 +130,9 @@ TEST(SurfaceNormal, IsThePlanesNormalTowardsTheEye) {
   }
 }
 
-TEST(FindReceivers, TilesAreThoseOfAllReceivers) {
+TEST(FindSurfaces, TilesAreThoseOfAllReceivers) {
   const testing::TestScene scene(2, 1, 323, 177);
-  const Receivers receivers = *FindReceivers(scene.View(), 1u, {});
+  const Surfaces receivers = *FindSurfaces(scene.View(), 1u, {});
   EXPECT_EQ(receivers.counts[0].invalid_depth, 0);
   EXPECT_EQ(receivers.tiles.filter.shadow_mask, 0u);
   EXPECT_EQ(receivers.tiles.num_surfaces, receivers.counts[0].receivers);
@@ -142,12 +142,12 @@ TEST(FindReceivers, TilesAreThoseOfAllReceivers) {
 // With outlines every candidate on a surface is a boundary pixel but for those without a neighbour
 // along x or y; without them only those whose surface continues, which are among the others with
 // the same gradient.
-TEST(FindReceivers, OutlinesAddToTheBoundary) {
+TEST(FindSurfaces, OutlinesAddToTheBoundary) {
   int64_t num_added = 0;
   for (uint64_t seed = 1; seed <= 4; ++seed) {
     const testing::TestScene scene(seed, 3);
-    const Receivers with = *FindReceivers(scene.View(), 7u, {});
-    const Receivers without = *FindReceivers(scene.View(), 7u, FitOptions::AsPublished().samples);
+    const Surfaces with = *FindSurfaces(scene.View(), 7u, {});
+    const Surfaces without = *FindSurfaces(scene.View(), 7u, FitOptions::AsPublished().samples);
     auto next = with.boundary.begin();
     for (const BoundaryPixel& pixel : without.boundary) {
       while (next != with.boundary.end() && (next->x != pixel.x || next->y != pixel.y)) ++next;
@@ -165,11 +165,11 @@ TEST(FindReceivers, OutlinesAddToTheBoundary) {
   EXPECT_GE(num_added, 500);
 }
 
-TEST(FindReceivers, BoundaryIsTheSameWhateverOtherLightsAreAskedFor) {
+TEST(FindSurfaces, BoundaryIsTheSameWhateverOtherLightsAreAskedFor) {
   const testing::TestScene scene(5, 6);
-  const Receivers all = *FindReceivers(scene.View(), 0x3f, {});
+  const Surfaces all = *FindSurfaces(scene.View(), 0x3f, {});
   for (int bit = 0; bit < 6; ++bit) {
-    const Receivers one = *FindReceivers(scene.View(), 1u << bit, {});
+    const Surfaces one = *FindSurfaces(scene.View(), 1u << bit, {});
     int64_t num_in_all = 0;
     for (const BoundaryPixel& pixel : all.boundary) num_in_all += (pixel.lights >> bit) & 1u;
     EXPECT_EQ(num_in_all, static_cast<int64_t>(one.boundary.size()));
@@ -178,10 +178,10 @@ TEST(FindReceivers, BoundaryIsTheSameWhateverOtherLightsAreAskedFor) {
   }
 }
 
-TEST(FindReceivers, OutermostPixelsAreNeverBoundary) {
+TEST(FindSurfaces, OutermostPixelsAreNeverBoundary) {
   PlaneReadback readback = FloorReadback();
   readback.Cast(0, [](int x, int y) { return (x + y) % 2 == 0; });
-  const Receivers receivers = *FindReceivers(readback.View(), 1u, {});
+  const Surfaces receivers = *FindSurfaces(readback.View(), 1u, {});
   EXPECT_EQ(receivers.counts[0].candidates, 38 * 28);
   for (const BoundaryPixel& pixel : receivers.boundary) {
     EXPECT_GE(pixel.x, 1);
@@ -191,24 +191,24 @@ TEST(FindReceivers, OutermostPixelsAreNeverBoundary) {
   }
 }
 
-TEST(FindReceivers, ImagesWithoutInnerPixelsHaveNoBoundary) {
+TEST(FindSurfaces, ImagesWithoutInnerPixelsHaveNoBoundary) {
   for (const auto& [width, height] : {std::pair(1, 1), std::pair(2, 2), std::pair(40, 1)}) {
     PlaneReadback readback = FloorReadback(testing::FloorCamera(width, height));
     readback.Cast(0, [](int x, int) { return x % 2 == 0; });
-    const absl::StatusOr<Receivers> receivers = FindReceivers(readback.View(), 1u, {});
+    const absl::StatusOr<Surfaces> receivers = FindSurfaces(readback.View(), 1u, {});
     ASSERT_THAT(receivers, IsOk());
     EXPECT_TRUE(receivers->boundary.empty());
   }
 }
 
-TEST(FindReceivers, RejectsDepthWithoutAnySurface) {
+TEST(FindSurfaces, RejectsDepthWithoutAnySurface) {
   PlaneReadback readback = FloorReadback();
   readback.depth.assign(readback.depth.size(), 1e10f);
-  EXPECT_THAT(FindReceivers(readback.View(), 1u, {}),
+  EXPECT_THAT(FindSurfaces(readback.View(), 1u, {}),
               StatusIs(absl::StatusCode::kInvalidArgument,
                        HasSubstr("readback.depth: all 1200 pixels are background")));
   readback.depth.assign(readback.depth.size(), -1.0f);
-  EXPECT_THAT(FindReceivers(readback.View(), 1u, {}),
+  EXPECT_THAT(FindSurfaces(readback.View(), 1u, {}),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("1200 of 1200 pixels")));
 }
 

@@ -28,8 +28,8 @@ TEST(SampleEvaluator, GivesTheSameFromReceiversAsFromTheirRays) {
     SCOPED_TRACE(width);
     PlaneReadback readback = FloorReadback(FloorCamera(width, width * 9 / 16));
     readback.Cast(0, [width](int x, int y) { return x > width / 3 && y > width / 4; });
-    const Receivers receivers = *FindReceivers(readback.View(), 1u, options.samples);
-    const absl::StatusOr<PreparedLight> prepared = PrepareLight(receivers, lamp, options);
+    const Surfaces receivers = *FindSurfaces(readback.View(), 1u, options.samples);
+    const absl::StatusOr<LightView> prepared = ViewLight(receivers, lamp, options);
     ASSERT_THAT(prepared, IsOk());
     const Samples& samples = prepared->samples;
     std::vector<Eigen::Vector3d> rays;

@@ -40,7 +40,7 @@ void ForEachSummary(int num_scenes, const Check& check) {
         FitOptions options;
         options.metric = metric;
         const absl::StatusOr<Summary> summary = Summarize(scene.View(), light, options);
-        if (!summary.ok() || !FitInputs({light, *summary}, {512, 512}, options).ok()) continue;
+        if (!summary.ok() || !FitMatrix({light, *summary}, {512, 512}, options).ok()) continue;
         check(*summary, light, options);
         ++num_checked;
       }
@@ -53,7 +53,7 @@ double FittedEnergy(const Summary& summary,
                     const Light& light,
                     MapSize map,
                     const FitOptions& options) {
-  const absl::StatusOr<LightMatrix> fit = FitInputs({light, summary}, map, options);
+  const absl::StatusOr<LightMatrix> fit = FitMatrix({light, summary}, map, options);
   EXPECT_THAT(fit, IsOk());
   return fit.ok() ? fit->energy : 0.0;
 }
@@ -179,7 +179,7 @@ TEST(SummarizeForAnyAspect, LowersTheBoundToWhatFitsOfTheReadBackReach) {
     for (const Light& light : scene.lights) {
       const FitOptions options;
       const absl::StatusOr<Summary> square = Summarize(scene.View(), light, options);
-      if (!square.ok() || !FitInputs({light, *square}, {512, 512}, options).ok()) continue;
+      if (!square.ok() || !FitMatrix({light, *square}, {512, 512}, options).ok()) continue;
       const absl::StatusOr<Summary> summary = SummarizeForAnyAspect(scene.View(), light, options);
       ASSERT_TRUE(summary.ok()) << summary.status();
       const absl::StatusOr<MapShapes> before = FindMapShapes(*square, light, options);

@@ -10,7 +10,7 @@
 
 #include "geometry/homography.h"
 #include "optimizer/energy/footprint.h"
-#include "optimizer/figures/evaluate.h"
+#include "optimizer/evaluate.h"
 #include "optimizer/fit.h"
 #include "optimizer/light_view.h"
 #include "optimizer/readback/samples.h"
@@ -34,8 +34,8 @@ std::vector<double> SortedFootprints(const TestScene& scene,
                                      const Light& light,
                                      const LightMatrix& matrix) {
   const FitOptions options;
-  const absl::StatusOr<Receivers> receivers =
-      FindReceivers(scene.View(), uint32_t{1} << light.shadow_bit, options.samples);
+  const absl::StatusOr<Surfaces> receivers =
+      FindSurfaces(scene.View(), uint32_t{1} << light.shadow_bit, options.samples);
   const absl::StatusOr<Eigen::Matrix3d> map_from_ray = MapFromRay(matrix.map_from_world, light);
   EXPECT_TRUE(receivers.ok() && map_from_ray.ok());
   const Samples samples =
@@ -133,7 +133,7 @@ TEST(MeetTolerance, NoSmallerMapOfAllSizesHolds) {
         for (int height = 64; height <= width; height += 64) {
           const MapSize map = {width, height};
           if (TexelsOf(map) >= least) continue;
-          const absl::StatusOr<LightMatrix> fit = FitInputs({light, *summary}, map, options);
+          const absl::StatusOr<LightMatrix> fit = FitMatrix({light, *summary}, map, options);
           if (fit.ok() && fit->footprint.rms <= tolerance.limit_px) least = TexelsOf(map);
         }
       }

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "optimizer/figures/evaluate.h"
+#include "optimizer/evaluate.h"
 #include "optimizer/fit.h"
 #include "tests/testing/matchers.h"
 #include "tests/testing/metric_of.h"

@@ -1,4 +1,4 @@
-#include "optimizer/figures/evaluate.h"
+#include "optimizer/evaluate.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ TEST(EvaluateMatrix, FindsTheFiguresOfAFit) {
         options.metric = metric;
         const absl::StatusOr<LightMatrix> fit = FitLight(scene.View(), light, kMap, options);
         if (!fit.ok()) continue;
-        const absl::StatusOr<MatrixFigures> figures =
+        const absl::StatusOr<Figures> figures =
             EvaluateMatrix(scene.View(), light, fit->map_from_world, kMap, options);
         ASSERT_TRUE(figures.ok()) << figures.status();
         if (figures->num_behind > 0) continue;  // lit pixels next to what is covered
@@ -53,7 +53,7 @@ TEST(EvaluateMatrix, RefusesTheMatrixOfAnotherLight) {
   const TestScene scene(1, 3);
   const absl::StatusOr<LightMatrix> fit = FitLight(scene.View(), scene.lights[0], kMap);
   ASSERT_TRUE(fit.ok()) << fit.status();
-  const absl::StatusOr<MatrixFigures> figures =
+  const absl::StatusOr<Figures> figures =
       EvaluateMatrix(scene.View(), scene.lights[1], fit->map_from_world, kMap);
   EXPECT_EQ(figures.status().code(), absl::StatusCode::kInvalidArgument);
   EXPECT_THAT(std::string(figures.status().message()), HasSubstr("do not leave the light"));
@@ -64,7 +64,7 @@ TEST(EvaluateMatrix, SaysWhenAMapLooksTheOtherWay) {
   absl::StatusOr<LightMatrix> fit = FitLight(scene.View(), scene.lights[0], kMap);
   ASSERT_TRUE(fit.ok()) << fit.status();
   fit->map_from_world = -fit->map_from_world;  // the same places, all with w < 0
-  const absl::StatusOr<MatrixFigures> figures =
+  const absl::StatusOr<Figures> figures =
       EvaluateMatrix(scene.View(), scene.lights[0], fit->map_from_world, kMap);
   EXPECT_EQ(figures.status().code(), absl::StatusCode::kFailedPrecondition);
   EXPECT_THAT(std::string(figures.status().message()), HasSubstr("w <= 0 at all"));
@@ -75,7 +75,7 @@ TEST(EvaluateMatrix, HasNothingToSumWithoutShadowEdges) {
   absl::StatusOr<LightMatrix> fit = FitLight(scene.View(), scene.lights[0], kMap);
   ASSERT_TRUE(fit.ok()) << fit.status();
   scene.readback.shadow_bits.assign(scene.readback.shadow_bits.size(), 0);
-  const absl::StatusOr<MatrixFigures> figures =
+  const absl::StatusOr<Figures> figures =
       EvaluateMatrix(scene.View(), scene.lights[0], fit->map_from_world, kMap);
   ASSERT_TRUE(figures.ok()) << figures.status();
   EXPECT_EQ(figures->energy, 0.0);
