@@ -5,12 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "base/stop.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "base/stop.h"
 #include "base/text_file.h"
-#include "base/utf8.h"
 #include "calls/message_text.h"
 #include "calls/pixel_buffer.h"
 #include "calls/request_fields.h"
@@ -23,6 +22,7 @@
 #include "wire/options_proto.h"
 #include "wire/proto_json.h"
 #include "wire/result_json.h"
+#include "wire/utf8.h"
 
 namespace lightfit {
 namespace {
@@ -122,8 +122,7 @@ absl::StatusOr<v1::EvaluateResult> AnswerEvaluate(const v1::EvaluateRequest& req
   v1::EvaluateResult result;
   for (int i = 0; i < request.matrices_size(); ++i) {
     const v1::CandidateMatrix& candidate = request.matrices(i);
-    absl::StatusOr<v1::Evaluation> evaluation =
-        Evaluate(candidate, *lights, surfaces, *options);
+    absl::StatusOr<v1::Evaluation> evaluation = Evaluate(candidate, *lights, surfaces, *options);
     if (StopRequested()) return StoppedError();
     v1::Evaluation& entry = *result.add_evaluations();
     if (evaluation.ok()) entry = *evaluation;

@@ -1,7 +1,7 @@
 #include "calls/message_text.h"
 
 #include "absl/strings/str_cat.h"
-#include "base/utf8.h"
+#include "wire/utf8.h"
 
 namespace lightfit {
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "base/utf8.h"
+#include "wire/utf8.h"
 
 namespace lightfit::fuzz {
 namespace {

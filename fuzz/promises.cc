@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "base/utf8.h"
 #include "lightfit/v1/result.pb.h"
 #include "wire/proto_json.h"
+#include "wire/utf8.h"
 
 namespace lightfit::fuzz {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "absl/strings/str_format.h"
 #include "absl/strings/string_view.h"
-#include "base/utf8.h"
+#include "wire/utf8.h"
 
 namespace lightfit::internal {
 

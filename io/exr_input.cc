@@ -8,8 +8,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "base/text_file.h"
-#include "base/utf8.h"
 #include "io/exr_header.h"
+#include "wire/utf8.h"
 
 namespace lightfit::internal {
 

@@ -1,8 +1,8 @@
 #include "jobs/fit_summary.h"
 
 #include "absl/strings/str_format.h"
-#include "base/utf8.h"
 #include "optimizer/fit.h"
+#include "wire/utf8.h"
 
 namespace lightfit {
 

@@ -12,7 +12,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
-#include "base/utf8.h"
+#include "wire/utf8.h"
 
 namespace lightfit {
 namespace {

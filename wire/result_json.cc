@@ -3,11 +3,11 @@
 #include <utility>
 
 #include "base/text_file.h"
-#include "base/utf8.h"
 #include "wire/camera_proto.h"
 #include "wire/light_proto.h"
 #include "wire/options_proto.h"
 #include "wire/proto_json.h"
+#include "wire/utf8.h"
 
 namespace lightfit {
 

@@ -31,7 +31,7 @@ using ::testing::StartsWith;
 constexpr uint32_t kSeed = 20240611;
 constexpr double kSearchTolerance = 1e-5;  // of energies, where the search is let end
 
-class Shot : public ::testing::Test {
+class SummarizeShot : public ::testing::Test {
  protected:
   void SetUp() override {
     if (!std::filesystem::exists(folder_)) GTEST_SKIP() << "no read-backs at " << folder_;
@@ -46,7 +46,7 @@ class Shot : public ::testing::Test {
 
 // Summarised one by one, then added in random groups, some of them with read-backs: what comes out
 // is the same file, the same matrices, and the library's own sum.
-TEST_F(Shot, SameBytesInAnyOrderAndGrouping) {
+TEST_F(SummarizeShot, SameBytesInAnyOrderAndGrouping) {
   const TemporaryFolder folder;
   const std::string sum = folder.Path("shot.summary"), json = folder.Path("shot.json");
   std::vector<std::string> singles;
@@ -85,7 +85,7 @@ TEST_F(Shot, SameBytesInAnyOrderAndGrouping) {
   }
 }
 
-TEST_F(Shot, MatricesAreThoseOfTheLibrarysSum) {
+TEST_F(SummarizeShot, MatricesAreThoseOfTheLibrarysSum) {
   const TemporaryFolder folder;
   const std::string sum = folder.Path("shot.summary"), json = folder.Path("shot.json");
   const absl::StatusOr<std::vector<Light>> lights = ReadLightsFile(Lights());
@@ -124,7 +124,7 @@ TEST_F(Shot, MatricesAreThoseOfTheLibrarysSum) {
 
 // Weighed once more, in the shot's own map, the bound on the sum of footprints falls to where it
 // belongs to that map.
-TEST_F(Shot, WeighingByTheFirstRoundLowersTheBound) {
+TEST_F(SummarizeShot, WeighingByTheFirstRoundLowersTheBound) {
   const TemporaryFolder folder;
   const std::string first = folder.Path("1.json"), second = folder.Path("2.json");
   const std::string sum = folder.Path("sum.summary"), weighed = folder.Path("weighed.summary");

@@ -1,4 +1,4 @@
-#include "base/utf8.h"
+#include "wire/utf8.h"
 
 #include <google/protobuf/stubs/common.h>
 

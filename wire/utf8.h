@@ -1,4 +1,4 @@
-// base/utf8.h
+// wire/utf8.h
 //
 // Words from outside that go into messages.
 // In:   bytes of any kind: names in files, what libraries quote of them.
