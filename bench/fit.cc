@@ -119,12 +119,15 @@ void RegisterStages(const FitInput& input) {
     benchmark::DoNotOptimize(FindSurfaces(input.input.View(), mask, published_samples));
   });
 
-  const auto receivers = std::make_shared<const Surfaces>(
-      *FindSurfaces(input.input.View(), mask, published_samples));
+  const auto receivers =
+      std::make_shared<const Surfaces>(*FindSurfaces(input.input.View(), mask, published_samples));
   const auto cover =
       std::make_shared<const RayCover>(*CoverReceivers(*receivers, light, Cover::kReceivers));
-  const auto samples = std::make_shared<const Samples>(
-      SelectSamples(*receivers, light, cover->normalized_from_ray, /*with_edge_normals=*/false));
+  const auto samples = std::make_shared<const Samples>(SelectSamples(*receivers,
+                                                                     light,
+                                                                     receivers->options,
+                                                                     cover->normalized_from_ray,
+                                                                     /*with_edge_normals=*/false));
   const auto summary =
       std::make_shared<const Summary>(SummarizeSamples(*samples, *cover, MetricWeights()));
   const auto num_samples = static_cast<int64_t>(samples->size());
@@ -145,7 +148,8 @@ void RegisterStages(const FitInput& input) {
     }
   });
   Register("BM_SelectSamples/" + input.name, num_samples, [receivers, cover, &light] {
-    benchmark::DoNotOptimize(SelectSamples(*receivers, light, cover->normalized_from_ray, false));
+    benchmark::DoNotOptimize(
+        SelectSamples(*receivers, light, receivers->options, cover->normalized_from_ray, false));
   });
   Register("BM_SummarizeSamples/" + input.name, num_samples, [samples, cover] {
     benchmark::DoNotOptimize(SummarizeSamples(*samples, *cover, MetricWeights()));

@@ -23,8 +23,11 @@ absl::StatusOr<MatrixCheck> MatrixCheck::Create(const Readback& readback,
   check.world_from_ray_.topRows<3>() = ray_from_world.leftCols<3>().transpose();
   check.world_from_ray_.row(3).setZero();
   if (light.kind == Light::Kind::kDirectional) check.world_from_ray_(3, 2) = 1.0;
-  check.samples_ =
-      SelectSamples(*receivers, light, Eigen::Matrix3d::Identity(), /*with_edge_normals=*/false);
+  check.samples_ = SelectSamples(*receivers,
+                                 light,
+                                 receivers->options,
+                                 Eigen::Matrix3d::Identity(),
+                                 /*with_edge_normals=*/false);
   const AffineDepth affine_depth(readback.camera, readback.depth_kind);
   const Eigen::Matrix4d world_from_screen = readback.camera.WorldFromScreen();
   size_t pixel = 0;

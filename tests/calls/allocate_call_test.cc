@@ -18,6 +18,7 @@
 #include "tests/io/summary_examples.h"
 #include "tests/testing/test_scene.h"
 #include "wire/options_proto.h"
+#include "optimizer/light_matrix.h"
 
 namespace lightfit {
 namespace {
@@ -59,7 +60,7 @@ void ExpectMatrix(const v1::LightResult& light, const absl::StatusOr<LightMatrix
   EXPECT_EQ(light.map().height(), matrix->map.height);
   EXPECT_EQ(light.map_from_world().SerializeAsString(),
             MatrixToProto(matrix->map_from_world).SerializeAsString());
-  EXPECT_EQ(light.energies().final(), matrix->energy);
+  EXPECT_EQ(light.energies().final(), matrix->figures.energy);
 }
 
 TEST(AllocateCall, SplitsABudgetAsTheLibraryDoes) {

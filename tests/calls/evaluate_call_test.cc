@@ -15,6 +15,7 @@
 #include "tests/testing/test_scene.h"
 #include "wire/matrix_proto.h"
 #include "wire/options_proto.h"
+#include "optimizer/figures/figures.h"
 
 namespace lightfit {
 namespace {
@@ -55,7 +56,7 @@ void ExpectFigures(const v1::Evaluation& evaluation, const Figures& figures) {
             FootprintToProto(figures.footprint, true).SerializeAsString());
   EXPECT_EQ(evaluation.samples().SerializeAsString(),
             SampleCountsToProto(figures.samples).SerializeAsString());
-  EXPECT_EQ(evaluation.num_behind(), figures.num_behind);
+  EXPECT_EQ(evaluation.num_behind(), figures.footprint.num_behind);
   EXPECT_EQ(evaluation.wrong_share(), figures.wrong_share);
 }
 

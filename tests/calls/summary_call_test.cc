@@ -11,6 +11,7 @@
 #include "tests/calls/requests.h"
 #include "tests/io/summary_examples.h"
 #include "wire/options_proto.h"
+#include "optimizer/light_matrix.h"
 
 namespace lightfit {
 namespace {
@@ -68,8 +69,8 @@ TEST(SummaryCall, IsTheLibrarysFitOfTheSum) {
     EXPECT_EQ(answer.clip_from_world().SerializeAsString(),
               MatrixToProto(ClipFromMap(kMap, ClipConvention::OpenGl()) * matrix->map_from_world)
                   .SerializeAsString());
-    EXPECT_EQ(answer.energies().final(), matrix->energy);
-    EXPECT_EQ(answer.evaluations(), matrix->evaluations);
+    EXPECT_EQ(answer.energies().final(), matrix->figures.energy);
+    EXPECT_EQ(answer.evaluations(), matrix->search.evaluations);
   }
 }
 

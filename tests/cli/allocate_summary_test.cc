@@ -17,6 +17,7 @@
 #include "tests/cli/examples.h"
 #include "tests/cli/summaries.h"
 #include "tests/testing/process.h"
+#include "optimizer/figures/figures.h"
 
 namespace lightfit {
 namespace {
@@ -236,7 +237,7 @@ TEST(AllocateSummary, AToleranceOfAShotHoldsForTheSamplesOfItsFrames) {
                          {found.map().width(), found.map().height()},
                          squares);
       ASSERT_TRUE(figures.ok()) << figures.status();
-      EXPECT_EQ(figures->num_behind, 0);
+      EXPECT_EQ(figures->footprint.num_behind, 0);
       num_samples += figures->samples.used;
       sum_squared += static_cast<double>(figures->samples.used) * figures->footprint.rms *
                      figures->footprint.rms;

@@ -17,6 +17,7 @@
 #include "tests/cli/examples.h"
 #include "tests/cli/summaries.h"
 #include "tests/testing/process.h"
+#include "optimizer/light_matrix.h"
 
 namespace lightfit {
 namespace {
@@ -117,8 +118,8 @@ TEST_F(SummarizeShot, MatricesAreThoseOfTheLibrarysSum) {
     const absl::StatusOr<LightMatrix> fit = Fit(*merged, (*lights)[l], {1024, 1024}, options);
     ASSERT_TRUE(fit.ok()) << fit.status();
     EXPECT_EQ(MatrixOf(light.map_from_world()), fit->map_from_world);
-    EXPECT_EQ(light.energies().final(), fit->energy);
-    EXPECT_EQ(light.samples().used(), fit->samples.used);
+    EXPECT_EQ(light.energies().final(), fit->figures.energy);
+    EXPECT_EQ(light.samples().used(), fit->figures.samples.used);
   }
 }
 

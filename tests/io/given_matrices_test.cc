@@ -8,6 +8,7 @@
 #include <Eigen/LU>
 
 #include "tests/testing/matchers.h"
+#include "geometry/clip.h"
 
 namespace lightfit {
 namespace {

@@ -22,6 +22,7 @@
 #include "optimizer/fit.h"
 #include "optimizer/readback/surfaces.h"
 #include "tests/testing/process.h"
+#include "optimizer/light_matrix.h"
 
 namespace lightfit {
 namespace {
@@ -102,7 +103,8 @@ DirectShot Together(const std::vector<ReadbackFile>& frames,
   const MetricWeights metric = WeightsOf(options.metric, options.along_edge_share);
   Eigen::Matrix<double, 6, 6> tensor = Eigen::Matrix<double, 6, 6>::Zero();
   for (const Surfaces& frame : receivers) {
-    shot.samples.push_back(SelectSamples(frame, light, cover.normalized_from_ray, true));
+    shot.samples.push_back(
+        SelectSamples(frame, light, frame.options, cover.normalized_from_ray, true));
     const Summary summary = SummarizeSamples(shot.samples.back(), cover, metric);
     tensor += summary.tensor.entries();
     shot.summary.total_weight += summary.total_weight;
@@ -131,7 +133,7 @@ TEST_F(ShotWalk, SumOfSummariesIsTheDirectFitOfAllFrames) {
     EXPECT_EQ(direct.summary.counts.used, merged->counts.used);
     const auto from_all = Fit(direct.summary, light, kMap, options);
     ASSERT_TRUE(from_all.ok()) << from_all.status();
-    EXPECT_NEAR(from_sum->energy / from_all->energy, 1.0, 1e-9) << light.name;
+    EXPECT_NEAR(from_sum->figures.energy / from_all->figures.energy, 1.0, 1e-9) << light.name;
 
     // And both are what the samples say one by one.
     const Eigen::Matrix<double, 3, 4> ray_from_world = RayFromWorld(light);
@@ -145,11 +147,11 @@ TEST_F(ShotWalk, SumOfSummariesIsTheDirectFitOfAllFrames) {
     for (const Samples& samples : direct.samples) {
       sum += Energy(map_from_normalized, samples, direct.summary.metric);
     }
-    EXPECT_NEAR(from_sum->energy / sum, 1.0, 1e-9) << light.name;
+    EXPECT_NEAR(from_sum->figures.energy / sum, 1.0, 1e-9) << light.name;
     std::printf("%s: sum of summaries / direct fit - 1 = %.1e, / sample by sample - 1 = %.1e\n",
                 light.name.c_str(),
-                from_sum->energy / from_all->energy - 1.0,
-                from_sum->energy / sum - 1.0);
+                from_sum->figures.energy / from_all->figures.energy - 1.0,
+                from_sum->figures.energy / sum - 1.0);
   }
 }
 

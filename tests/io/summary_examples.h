@@ -23,6 +23,7 @@
 #include "tests/testing/matchers.h"
 #include "wire/result_json.h"
 #include "wire/summary_proto.h"
+#include "optimizer/light_matrix.h"
 
 namespace lightfit::testing {
 
@@ -117,7 +118,7 @@ inline bool FitsOrSaysWhy(const LightSummary& light, const FitOptions& options) 
   const bool has_matrix = fit.matrix.ok();
   if (has_matrix) {
     EXPECT_TRUE(fit.matrix->map_from_world.allFinite());
-    EXPECT_TRUE(std::isfinite(fit.matrix->energy)) << fit.matrix->energy;
+    EXPECT_TRUE(std::isfinite(fit.matrix->figures.energy)) << fit.matrix->figures.energy;
   } else {
     EXPECT_FALSE(fit.matrix.status().message().empty());
   }

@@ -16,6 +16,7 @@
 #include "absl/strings/str_cat.h"
 #include "optimizer/fit.h"
 #include "tests/io/summary_examples.h"
+#include "optimizer/light_matrix.h"
 
 namespace lightfit {
 namespace {
@@ -66,7 +67,7 @@ TEST(SummaryFile, ReadsBackWhatWasWritten) {
     ASSERT_THAT(fit_before, IsOk());
     ASSERT_THAT(fit_after, IsOk());
     EXPECT_EQ(fit_before->map_from_world, fit_after->map_from_world);
-    EXPECT_EQ(fit_before->energy, fit_after->energy);
+    EXPECT_EQ(fit_before->figures.energy, fit_after->figures.energy);
   }
   EXPECT_EQ(BytesOf(*read), testing::Bytes(folder.File("yard.summary")));
 }

@@ -99,8 +99,11 @@ Reach ReachAtSamples(const Stage& stage,
   const absl::StatusOr<Surfaces> receivers =
       FindSurfaces(readback, uint32_t{1} << light.shadow_bit, options.samples);
   EXPECT_TRUE(receivers.ok()) << receivers.status();
-  const Samples samples =
-      SelectSamples(*receivers, light, Eigen::Matrix3d::Identity(), /*with_edge_normals=*/false);
+  const Samples samples = SelectSamples(*receivers,
+                                        light,
+                                        receivers->options,
+                                        Eigen::Matrix3d::Identity(),
+                                        /*with_edge_normals=*/false);
   Reach reach;
   for (size_t i = 0; i < samples.size(); ++i) {
     const int x = static_cast<int>(samples.x[i]), y = static_cast<int>(samples.y[i]);

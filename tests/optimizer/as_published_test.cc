@@ -31,7 +31,8 @@ class Algorithm1 {
   Algorithm1(const Readback& readback, const Light& light) {
     const Surfaces receivers =
         *FindSurfaces(readback, 1u << light.shadow_bit, FitOptions::AsPublished().samples);
-    samples_ = SelectSamples(receivers, light, Eigen::Matrix3d::Identity(), false);
+    samples_ =
+        SelectSamples(receivers, light, receivers.options, Eigen::Matrix3d::Identity(), false);
     const std::vector<Eigen::Vector3d> positions = *ReceiverPositions(readback);
     for (const Eigen::Vector3d& position : positions) {
       rays_.push_back(RayFromWorld(light) * position.homogeneous());
@@ -167,8 +168,8 @@ TEST(AsPublished, FollowsAlgorithm1StepByStep) {
       if (!matrix.ok()) continue;  // too few samples
       Algorithm1 by_hand(scene.View(), light);
       const Eigen::Matrix<double, 3, 4> expected = by_hand.Run() * RayFromWorld(light);
-      EXPECT_LE(RelativeError(matrix->energy_start, by_hand.energy_start), 1e-9);
-      EXPECT_LE(RelativeError(matrix->energy, by_hand.energy), 1e-9);
+      EXPECT_LE(RelativeError(matrix->search.energy_start, by_hand.energy_start), 1e-9);
+      EXPECT_LE(RelativeError(matrix->figures.energy, by_hand.energy), 1e-9);
       // The matrix is free up to a factor.
       const Eigen::RowVector4d w_row = matrix->map_from_world.row(3);
       const double scale = w_row.norm() / expected.row(2).norm();
@@ -178,7 +179,8 @@ TEST(AsPublished, FollowsAlgorithm1StepByStep) {
       EXPECT_LE(RowDifference(matrix->map_from_world.row(1), scale * expected.row(1), w_row, 256),
                 1e-6);
       ++num_compared;
-      num_improved += static_cast<int>(matrix->energy < 0.999 * matrix->energy_start);
+      num_improved +=
+          static_cast<int>(matrix->figures.energy < 0.999 * matrix->search.energy_start);
     }
   }
   EXPECT_GE(num_compared, 15);
@@ -198,9 +200,10 @@ TEST(AsPublished, SampleBySampleEqualsFromTheSummary) {
       const auto by_summary = FitLight(scene.View(), light, kMap, options);
       ASSERT_EQ(by_sample.ok(), by_summary.ok());
       if (!by_sample.ok()) continue;
-      EXPECT_LE(RelativeError(by_sample->energy_start, by_summary->energy_start), 1e-9);
-      EXPECT_LE(RelativeError(by_sample->energy, by_summary->energy), 1e-9);
-      EXPECT_EQ(by_sample->evaluations, by_summary->evaluations);
+      EXPECT_LE(RelativeError(by_sample->search.energy_start, by_summary->search.energy_start),
+                1e-9);
+      EXPECT_LE(RelativeError(by_sample->figures.energy, by_summary->figures.energy), 1e-9);
+      EXPECT_EQ(by_sample->search.evaluations, by_summary->search.evaluations);
       ++num_compared;
     }
   }

@@ -35,11 +35,11 @@ TEST(EvaluateMatrix, FindsTheFiguresOfAFit) {
         const absl::StatusOr<Figures> figures =
             EvaluateMatrix(scene.View(), light, fit->map_from_world, kMap, options);
         ASSERT_TRUE(figures.ok()) << figures.status();
-        if (figures->num_behind > 0) continue;  // lit pixels next to what is covered
-        EXPECT_NEAR(figures->energy / fit->energy, 1.0, kTolerance) << light.name;
-        EXPECT_NEAR(figures->footprint.rms / fit->footprint.rms, 1.0, kTolerance);
-        EXPECT_NEAR(figures->footprint.worst / fit->footprint.worst, 1.0, kTolerance);
-        EXPECT_EQ(figures->samples.used, fit->samples.used);
+        if (figures->footprint.num_behind > 0) continue;  // lit pixels next to what is covered
+        EXPECT_NEAR(figures->energy / fit->figures.energy, 1.0, kTolerance) << light.name;
+        EXPECT_NEAR(figures->footprint.rms / fit->figures.footprint.rms, 1.0, kTolerance);
+        EXPECT_NEAR(figures->footprint.worst / fit->figures.footprint.worst, 1.0, kTolerance);
+        EXPECT_EQ(figures->samples.used, fit->figures.samples.used);
         EXPECT_EQ(figures->wrong_share,
                   *ForetellWrongShare(scene.View(), light, fit->map_from_world, kMap));
         ++num_compared;

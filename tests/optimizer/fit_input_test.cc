@@ -57,8 +57,8 @@ TEST(FitLight, IgnoresAndCountsSinglePixelsOfInvalidDepth) {
       for (const int x : {3, 12, 20, 39}) readback.depth[readback.Index(x, 15)] = bad;
       const auto matrix = FitLight(readback.View(), light, kMap);
       ASSERT_THAT(matrix, IsOk()) << bad;
-      EXPECT_EQ(matrix->samples.receivers, 40 * 30 - 4);
-      EXPECT_EQ(matrix->samples.invalid_depth, bad == kInfinity ? 0 : 4) << bad;
+      EXPECT_EQ(matrix->figures.samples.receivers, 40 * 30 - 4);
+      EXPECT_EQ(matrix->figures.samples.invalid_depth, bad == kInfinity ? 0 : 4) << bad;
       ExpectAllFinite(*matrix);
       ExpectCovers(*matrix, readback.View(), light);
     }
@@ -94,7 +94,7 @@ TEST(FitLight, WithoutShadowBoundaryThereIsNothingToFit) {
     focused.search = Search::kFocused;
     const auto matrix = FitLight(readback.View(), kSun, kMap, focused);
     ASSERT_THAT(matrix, IsOk());
-    EXPECT_EQ(matrix->energy, 0.0);
+    EXPECT_EQ(matrix->figures.energy, 0.0);
     ExpectAllFinite(*matrix);
     ExpectCovers(*matrix, readback.View(), kSun);
   }

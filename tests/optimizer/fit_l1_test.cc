@@ -69,7 +69,8 @@ double SlowTwin(const Readback& readback, const Light& light, const FitOptions& 
   const Surfaces receivers = *FindSurfaces(readback, 1u << light.shadow_bit, options.samples);
   const RayCover cover = *CoverReceivers(receivers, light, options.cover);
   const MetricWeights metric = WeightsOf(options.metric, options.along_edge_share);
-  Samples samples = SelectSamples(receivers, light, cover.normalized_from_ray, true);
+  Samples samples =
+      SelectSamples(receivers, light, receivers.options, cover.normalized_from_ray, true);
   AffineProblem problem;
   problem.map = kMap;
   problem.affine = options.affine;
@@ -79,13 +80,11 @@ double SlowTwin(const Readback& readback, const Light& light, const FitOptions& 
   for (int round = 0; round < kRounds; ++round) {
     const Summary summary = SummarizeSamples(samples, cover, metric);
     SummaryEvaluator evaluator(summary, problem, options.min_w);
-    std::string report;
     const AffineFit fit = GlobalSearch(summary,
                                        evaluator,
                                        *evaluator.Evaluate(Eigen::Vector3d::UnitZ()),
                                        options.grid_directions,
-                                       options.refiner,
-                                       &report)
+                                       options.refiner)
                               .fit;
     const std::vector<double> footprints = Footprints(samples, metric, fit.map_from_ray);
     const double sum = Sum(footprints);
@@ -109,7 +108,7 @@ TEST(FitLightL1, IsAsGoodAsSearchingAnewInEveryRound) {
         const FitOptions options = OptionsFor(metric);
         const auto matrix = FitLight(scene.View(), light, kMap, options);
         if (!matrix.ok()) continue;
-        ratios.push_back(matrix->energy / SlowTwin(scene.View(), light, options));
+        ratios.push_back(matrix->figures.energy / SlowTwin(scene.View(), light, options));
         EXPECT_LE(ratios.back(), metric == FitOptions().metric ? kAllowedByDefault : kAllowed)
             << matrix->BriefReport() << ", seed " << seed << ", metric "
             << static_cast<int>(metric);
@@ -133,17 +132,17 @@ TEST(FitLightL1, TraceHoldsEveryRoundAndTheBestIsReturned) {
       const FitOptions options = OptionsFor(metric);
       const auto matrix = FitLight(scene.View(), light, kMap, options);
       ASSERT_THAT(matrix, IsOk());
-      ASSERT_EQ(matrix->trace.size(), 1u + options.reweighting_rounds);
-      EXPECT_EQ(matrix->trace.front().station, "start");
-      EXPECT_EQ(matrix->trace.front().energy, matrix->energy_start);
-      double least = matrix->energy_start;
-      for (size_t i = 1; i < matrix->trace.size(); ++i) {
-        EXPECT_EQ(matrix->trace[i].station, i == 1 ? "search" : "reweight");
-        EXPECT_GE(matrix->trace[i].evaluations, matrix->trace[i - 1].evaluations);
-        least = std::min(least, matrix->trace[i].energy);
+      ASSERT_EQ(matrix->search.trace.size(), 1u + options.reweighting_rounds);
+      EXPECT_EQ(matrix->search.trace.front().station, "start");
+      EXPECT_EQ(matrix->search.trace.front().energy, matrix->search.energy_start);
+      double least = matrix->search.energy_start;
+      for (size_t i = 1; i < matrix->search.trace.size(); ++i) {
+        EXPECT_EQ(matrix->search.trace[i].station, i == 1 ? "search" : "reweight");
+        EXPECT_GE(matrix->search.trace[i].evaluations, matrix->search.trace[i - 1].evaluations);
+        least = std::min(least, matrix->search.trace[i].energy);
       }
-      EXPECT_EQ(matrix->energy, least);
-      EXPECT_EQ(matrix->trace.back().evaluations, matrix->evaluations);
+      EXPECT_EQ(matrix->figures.energy, least);
+      EXPECT_EQ(matrix->search.trace.back().evaluations, matrix->search.evaluations);
     }
   }
 }
@@ -153,7 +152,8 @@ TEST(WeightsForL1, AreOneOverTheFootprintsDownToAFloor) {
   for (const Light& light : scene.lights) {
     const Surfaces receivers = *FindSurfaces(scene.View(), 1u << light.shadow_bit, {});
     const RayCover cover = *CoverReceivers(receivers, light);
-    Samples samples = SelectSamples(receivers, light, cover.normalized_from_ray, true);
+    Samples samples =
+        SelectSamples(receivers, light, receivers.options, cover.normalized_from_ray, true);
     for (size_t i = 0; i < samples.size(); ++i) samples.weight[i] = 1.0 + 0.5 * (i % 3);
     const MetricWeights metric = WeightsOf(Metric::kL1AcrossEdge, 0.05);
     const Eigen::Matrix3d map_from_ray =
@@ -199,12 +199,12 @@ TEST(FitFromSummaryL1, IsNearlyFitLightAndItsEnergyIsABound) {
         testing::ExpectAllFinite(*matrix);
         testing::ExpectCovers(*matrix, scene.View(), light, options.cover);
         const double by_samples = MetricOf(*matrix, scene.View(), light, options);
-        EXPECT_LE(by_samples, kClose * whole->energy);
-        EXPECT_GE(matrix->energy, by_samples * (1.0 - kRounding));
-        EXPECT_LE(matrix->energy, kClose * by_samples);
-        EXPECT_LE(matrix->energy, matrix->energy_start * (1.0 + kRounding));
-        worst_map = std::max(worst_map, by_samples / whole->energy);
-        loosest = std::max(loosest, matrix->energy / by_samples);
+        EXPECT_LE(by_samples, kClose * whole->figures.energy);
+        EXPECT_GE(matrix->figures.energy, by_samples * (1.0 - kRounding));
+        EXPECT_LE(matrix->figures.energy, kClose * by_samples);
+        EXPECT_LE(matrix->figures.energy, matrix->search.energy_start * (1.0 + kRounding));
+        worst_map = std::max(worst_map, by_samples / whole->figures.energy);
+        loosest = std::max(loosest, matrix->figures.energy / by_samples);
         ++num_compared;
       }
     }
@@ -227,7 +227,8 @@ TEST(FitFromSummaryL1, BoundHoldsForOtherMapsToo) {
       for (const MapSize map : {MapSize{512, 512}, MapSize{2048, 64}}) {
         const auto matrix = Fit(*summary, light, map, options);
         ASSERT_THAT(matrix, IsOk());
-        EXPECT_GE(matrix->energy, MetricOf(*matrix, scene.View(), light, options) * (1.0 - 1e-5));
+        EXPECT_GE(matrix->figures.energy,
+                  MetricOf(*matrix, scene.View(), light, options) * (1.0 - 1e-5));
       }
     }
   }
@@ -255,8 +256,9 @@ TEST(FitFromSummaryL1, MergedFramesGiveAMapForBothAndABound) {
       if (!matrix.ok()) continue;
       const double by_samples = MetricOf(*matrix, frames[0].View(), light, options) +
                                 MetricOf(*matrix, frames[1].View(), light, options);
-      EXPECT_GE(matrix->energy, by_samples * (1.0 - 1e-5)) << light.name << ", seed " << seed;
-      loosest = std::max(loosest, matrix->energy / by_samples);
+      EXPECT_GE(matrix->figures.energy, by_samples * (1.0 - 1e-5))
+          << light.name << ", seed " << seed;
+      loosest = std::max(loosest, matrix->figures.energy / by_samples);
       ++num_merged;
     }
   }

@@ -33,8 +33,9 @@ TEST(FitLight, EnergyIsTheMetricOfTheMatrix) {
         options.metric = metric;
         const auto matrix = FitLight(scene.View(), light, kMap, options);
         if (!matrix.ok()) continue;
-        EXPECT_LE(RelativeError(matrix->energy, MetricOf(*matrix, scene.View(), light, options)),
-                  kTolerance)
+        EXPECT_LE(
+            RelativeError(matrix->figures.energy, MetricOf(*matrix, scene.View(), light, options)),
+            kTolerance)
             << static_cast<int>(metric) << " " << matrix->BriefReport();
         ++num_fitted;
       }
@@ -58,14 +59,14 @@ TEST(FitLight, EveryMetricIsNeverWorseThanItsStart) {
         const auto start = FitLight(scene.View(), light, kMap, focused);
         if (!matrix.ok()) continue;
         ASSERT_THAT(start, IsOk());
-        EXPECT_LE(matrix->energy, matrix->energy_start) << matrix->BriefReport();
+        EXPECT_LE(matrix->figures.energy, matrix->search.energy_start) << matrix->BriefReport();
         EXPECT_LE(MetricOf(*matrix, scene.View(), light, options),
                   MetricOf(*start, scene.View(), light, options) * (1.0 + 1e-9));
         FitOptions squared;
         squared.metric = Metric::kL2;
         const auto l2 = FitLight(scene.View(), light, kMap, squared);
         ASSERT_THAT(l2, IsOk());
-        EXPECT_LE(matrix->energy, MetricOf(*l2, scene.View(), light, options) * 1.01)
+        EXPECT_LE(matrix->figures.energy, MetricOf(*l2, scene.View(), light, options) * 1.01)
             << static_cast<int>(metric) << " " << matrix->BriefReport();
         ++num_fitted;
       }
@@ -87,8 +88,8 @@ TEST(FitLight, MoreReweightingIsNeverWorse) {
         options.reweighting_rounds = rounds;
         const auto matrix = FitLight(scene.View(), light, kMap, options);
         if (!matrix.ok()) continue;
-        EXPECT_LE(matrix->energy, before * (1.0 + kQuickPolish));
-        before = matrix->energy;
+        EXPECT_LE(matrix->figures.energy, before * (1.0 + kQuickPolish));
+        before = matrix->figures.energy;
       }
     }
   }

@@ -78,7 +78,8 @@ TEST(FitLight, EverySurfaceToCoverLiesInsideTheMap) {
         }
         ExpectAllFinite(*matrix);
         ExpectCovers(*matrix, scene.View(), scene.lights[i], choice.options.cover);
-        EXPECT_LE(matrix->energy, matrix->energy_start * (1.0 + 1e-12)) << matrix->BriefReport();
+        EXPECT_LE(matrix->figures.energy, matrix->search.energy_start * (1.0 + 1e-12))
+            << matrix->BriefReport();
         ++num_fitted;
       }
     }
@@ -134,8 +135,8 @@ TEST(FitLight, SameInputGivesTheSameBytes) {
       ASSERT_EQ(first.ok(), second.ok());
       if (!first.ok()) continue;
       EXPECT_TRUE(SameBytes(first->map_from_world, second->map_from_world)) << choice.name;
-      EXPECT_EQ(first->energy, second->energy);
-      EXPECT_EQ(first->footprint.worst, second->footprint.worst);
+      EXPECT_EQ(first->figures.energy, second->figures.energy);
+      EXPECT_EQ(first->figures.footprint.worst, second->figures.footprint.worst);
     }
   }
 }
@@ -211,14 +212,16 @@ TEST(Fit, FromTheSummaryEqualsFitLight) {
         const auto from_summary = Fit(*summary, light, kMap, options);
         ASSERT_EQ(whole.ok(), from_summary.ok());
         if (!whole.ok()) continue;
-        EXPECT_EQ(from_summary->footprint.worst, 0.0);
+        EXPECT_EQ(from_summary->figures.footprint.worst, 0.0);
         if (search == Search::kFocused) {
           EXPECT_TRUE(SameBytes(whole->map_from_world, from_summary->map_from_world));
-          EXPECT_EQ(whole->energy, from_summary->energy);
-          EXPECT_LE(RelativeError(whole->footprint.rms, from_summary->footprint.rms), 1e-9);
+          EXPECT_EQ(whole->figures.energy, from_summary->figures.energy);
+          EXPECT_LE(
+              RelativeError(whole->figures.footprint.rms, from_summary->figures.footprint.rms),
+              1e-9);
         } else {
-          EXPECT_LE(from_summary->energy, whole->energy);
-          EXPECT_GE(from_summary->energy, whole->energy * (1.0 - 1e-3));
+          EXPECT_LE(from_summary->figures.energy, whole->figures.energy);
+          EXPECT_GE(from_summary->figures.energy, whole->figures.energy * (1.0 - 1e-3));
         }
       }
     }
@@ -253,17 +256,18 @@ TEST(FitLight, RmsFollowsFromTheEnergy) {
   for (const Light& light : scene.lights) {
     const auto matrix = FitLight(scene.View(), light, kMap, SquaredFootprints());
     if (!matrix.ok()) continue;
-    const double from_energy = std::sqrt(0.5 * matrix->energy / matrix->samples.used);
-    EXPECT_LE(RelativeError(matrix->footprint.rms, from_energy), 1e-9);
-    EXPECT_LE(matrix->footprint.median, matrix->footprint.p99);
-    EXPECT_LE(matrix->footprint.p99, matrix->footprint.worst);
-    EXPECT_LE(matrix->footprint.rms, matrix->footprint.worst);
+    const double from_energy =
+        std::sqrt(0.5 * matrix->figures.energy / matrix->figures.samples.used);
+    EXPECT_LE(RelativeError(matrix->figures.footprint.rms, from_energy), 1e-9);
+    EXPECT_LE(matrix->figures.footprint.median, matrix->figures.footprint.p99);
+    EXPECT_LE(matrix->figures.footprint.p99, matrix->figures.footprint.worst);
+    EXPECT_LE(matrix->figures.footprint.rms, matrix->figures.footprint.worst);
     FitOptions quick = SquaredFootprints();
     quick.compute_statistics = false;
     const auto without = FitLight(scene.View(), light, kMap, quick);
     ASSERT_THAT(without, IsOk());
-    EXPECT_LE(RelativeError(without->footprint.rms, from_energy), 1e-9);
-    EXPECT_EQ(without->footprint.worst, 0.0);
+    EXPECT_LE(RelativeError(without->figures.footprint.rms, from_energy), 1e-9);
+    EXPECT_EQ(without->figures.footprint.worst, 0.0);
   }
 }
 
@@ -272,7 +276,8 @@ TEST(LightMatrix, BriefReportNamesLightSizeAndOutcome) {
   const auto matrix = FitLight(scene.View(), scene.lights[0], kMap);
   ASSERT_THAT(matrix, IsOk());
   EXPECT_THAT(matrix->BriefReport(), ::testing::StartsWith("sun0: 1024x512, energy "));
-  EXPECT_THAT(matrix->BriefReport(), ::testing::EndsWith(StopReasonName(matrix->stop_reason)));
+  EXPECT_THAT(matrix->BriefReport(),
+              ::testing::EndsWith(StopReasonName(matrix->search.stop_reason)));
 }
 
 }  // namespace

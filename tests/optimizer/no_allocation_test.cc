@@ -88,7 +88,7 @@ TEST(FitLights, AllocatesNothingFromAWarmPool) {
         ASSERT_TRUE(matrices[i].ok()) << matrices[i].status();
         EXPECT_EQ(matrices[i]->map_from_world, expected[i]->map_from_world);
         EXPECT_EQ(matrices[i]->light_name, expected[i]->light_name);
-        EXPECT_EQ(matrices[i]->energy, expected[i]->energy);
+        EXPECT_EQ(matrices[i]->figures.energy, expected[i]->figures.energy);
       }
     }
     std::printf("%s: %d blocks, %d KiB for %d lights\n",
@@ -125,8 +125,8 @@ TEST(FitLights, ResultsCopiedOutOutliveThePool) {
   }
   EXPECT_EQ(kept[0]->map_from_world, expected);
   for (const absl::StatusOr<LightMatrix>& matrix : kept) {
-    EXPECT_EQ(matrix->trace.get_allocator().resource(), nullptr);
-    EXPECT_EQ(matrix->trace.front().station, "start");
+    EXPECT_EQ(matrix->search.trace.get_allocator().resource(), nullptr);
+    EXPECT_EQ(matrix->search.trace.front().station, "start");
   }
 }
 

@@ -41,13 +41,13 @@ constexpr MapSize kMap = {512, 256};
 std::string TextOf(const LightMatrix& matrix) {
   std::string text = absl::StrFormat("%s evaluations %d, energy %a, %a, footprint %a %a %a %a",
                                      std::string(matrix.light_name),
-                                     matrix.evaluations,
-                                     matrix.energy,
-                                     matrix.energy_start,
-                                     matrix.footprint.rms,
-                                     matrix.footprint.median,
-                                     matrix.footprint.p99,
-                                     matrix.footprint.worst);
+                                     matrix.search.evaluations,
+                                     matrix.figures.energy,
+                                     matrix.search.energy_start,
+                                     matrix.figures.footprint.rms,
+                                     matrix.figures.footprint.median,
+                                     matrix.figures.footprint.p99,
+                                     matrix.figures.footprint.worst);
   for (const double entry : matrix.map_from_world.reshaped())
     absl::StrAppendFormat(&text, " %a", entry);
   return text;
@@ -62,7 +62,7 @@ std::string TextOf(const ToleranceMap& map) {
 std::string TextOf(const Figures& figures) {
   return absl::StrFormat("%a %a %a %a %d",
                          figures.energy,
-                         figures.wrong_share,
+                         figures.wrong_share.value_or(-1.0),
                          figures.footprint.median,
                          figures.footprint.p99,
                          figures.samples.used);
@@ -156,9 +156,7 @@ TEST(StopMoments, SummariesAndFiguresAreCancelledOrTheSameWheneverItIsAskedFor) 
   const Summary summary = *Summarize(readback, light);
   FitOptions options;
   const auto expect = [&](const std::function<absl::StatusOr<std::string>()>& call) {
-    ExpectCancelledOrTheSame(6, &random, [&]() {
-      return call();
-    });
+    ExpectCancelledOrTheSame(6, &random, [&]() { return call(); });
   };
   expect([&] { return TextOfResult(Summarize(readback, light, options)); });
   expect([&] { return TextOfResult(SummarizeInMap(readback, light, map_from_world, options)); });
@@ -200,18 +198,17 @@ TEST(StopMoments, AllocationsAreCancelledOrTheSameWheneverItIsAskedFor) {
   for (const Light& light : scene.lights) {
     lights.push_back({light, Summarize(scene.View(), light, options), 1.0});
   }
-  ExpectCancelledOrTheSame(
-      4, &random, [&]() -> absl::StatusOr<std::string> {
-        const absl::StatusOr<Allocation> allocation =
-            AllocateBudget(lights, int64_t{2048} * 2048, {}, options);
-        if (!allocation.ok()) return allocation.status();
-        std::string text = absl::StrFormat("%d %a ", allocation->texels, allocation->energy);
-        for (const AllocatedMap& map : allocation->maps) {
-          EXPECT_FALSE(absl::IsCancelled(map.matrix.status()));
-          text += map.matrix.ok() ? TextOf(*map.matrix) : map.matrix.status().ToString();
-        }
-        return text;
-      });
+  ExpectCancelledOrTheSame(4, &random, [&]() -> absl::StatusOr<std::string> {
+    const absl::StatusOr<Allocation> allocation =
+        AllocateBudget(lights, int64_t{2048} * 2048, {}, options);
+    if (!allocation.ok()) return allocation.status();
+    std::string text = absl::StrFormat("%d %a ", allocation->texels, allocation->energy);
+    for (const AllocatedMap& map : allocation->maps) {
+      EXPECT_FALSE(absl::IsCancelled(map.matrix.status()));
+      text += map.matrix.ok() ? TextOf(*map.matrix) : map.matrix.status().ToString();
+    }
+    return text;
+  });
 }
 
 // A camera that walks sideways past three lights.
@@ -261,9 +258,7 @@ TEST(StopMoments, TrackerGoesOnAsIfTheStoppedFrameHadNotBeen) {
         EXPECT_THAT(walk.Update(frame, &stopped), StatusIs(kCancelled, HasSubstr("light")));
       }
       // In the middle of it; a frame that comes through all the same is the frame.
-      const auto update = [&]() {
-        return walk.Update(frame, &stopped);
-      };
+      const auto update = [&]() { return walk.Update(frame, &stopped); };
       absl::StatusOr<std::string> result = StopOnce(update, whole, &random);
       if (absl::IsCancelled(result.status())) {
         ++num_cancelled;

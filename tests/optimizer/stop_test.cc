@@ -52,6 +52,8 @@ TEST(Stop, AskedForBeforehandEndsEveryCallOnAReadback) {
   ASSERT_THAT(receivers, IsOk());
   const absl::StatusOr<LightView> prepared = ViewLight(*receivers, light, {});
   ASSERT_THAT(prepared, IsOk());
+  ASSERT_THAT(prepared->cover, IsOk());
+  const Summary summary = SummaryOfView(*prepared, options);
   const auto is_stopped = StatusIs(kCancelled, HasSubstr("stopped"));
   const StopScope stopped(Stopped());
 
@@ -63,9 +65,8 @@ TEST(Stop, AskedForBeforehandEndsEveryCallOnAReadback) {
   EXPECT_THAT(SummarizeInMap(readback, light, fit->map_from_world, options), is_stopped);
   EXPECT_THAT(SummarizeForAnyAspect(readback, light, options), is_stopped);
   EXPECT_THAT(EvaluateMatrix(readback, light, fit->map_from_world, kMap, options), is_stopped);
-  EXPECT_THAT(
-      ForetellWrongShare(readback, light, fit->map_from_world, kMap, options.samples),
-      is_stopped);
+  EXPECT_THAT(ForetellWrongShare(readback, light, fit->map_from_world, kMap, options.samples),
+              is_stopped);
   for (const auto kind : {Tolerance::Kind::kRms, Tolerance::Kind::kP99, Tolerance::Kind::kWorst}) {
     EXPECT_THAT(MeetTolerance(readback, light, {kind, 1.0, 1.0}, {}, options), is_stopped);
   }
@@ -76,7 +77,7 @@ TEST(Stop, AskedForBeforehandEndsEveryCallOnAReadback) {
     EXPECT_THAT(CoverReceivers(*receivers, light, cover), names_light);
   }
   EXPECT_THAT(ViewLight(*receivers, light, options), names_light);
-  const SearchInputs inputs = {light, prepared->summary, &prepared->samples, &*receivers};
+  const SearchInputs inputs = {light, summary, &prepared->samples, &*receivers};
   EXPECT_THAT(FitMatrix(inputs, kMap, options), names_light);
   EXPECT_THAT(MatrixOfMap(inputs, Eigen::Matrix3d::Identity(), kMap, options), names_light);
   for (const Search search : {Search::kFocused,
@@ -162,20 +163,19 @@ TEST(Stop, NoAxisIsEvaluatedOnceItIsAskedFor) {
     EXPECT_FALSE(evaluator.Evaluate(Eigen::Vector3d::UnitZ()).has_value());
     RotationLineSearch(evaluator, start, /*rounds=*/3);
     for (const Refiner refiner : {Refiner::kTinySolver, Refiner::kCeres}) {
-      std::string report;
       const SearchResult result =
-          GlobalSearch(station.summary, evaluator, start, 1'000'000'000, refiner, &report);
+          GlobalSearch(station.summary, evaluator, start, 1'000'000'000, refiner);
       EXPECT_EQ(result.fit.energy, start.energy);
-      const RefineResult refined =
+      const SearchResult refined =
           RefineAxis(station.summary, problem, testing::kMinW, refiner, start);
-      EXPECT_EQ(refined.evaluations, 0);
+      EXPECT_EQ(refined.report.evaluations, 0);
       EXPECT_EQ(refined.fit.energy, start.energy);
     }
     EXPECT_EQ(evaluator.num_evaluations(), 0);
     for (const Polish polish : {Polish::kQuick, Polish::kThorough, Polish::kExact}) {
-      const RefineResult polished =
+      const SearchResult polished =
           PolishAxis(station.summary, problem, testing::kMinW, polish, start);
-      EXPECT_EQ(polished.evaluations, 0);
+      EXPECT_EQ(polished.report.evaluations, 0);
       EXPECT_EQ(polished.fit.energy, start.energy);
     }
   }

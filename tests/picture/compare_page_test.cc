@@ -15,6 +15,7 @@
 #include "picture/compare_choice.h"
 #include "picture/shadow_panel.h"
 #include "picture/theme.h"
+#include "optimizer/figures/figures.h"
 
 namespace lightfit {
 namespace {

@@ -57,7 +57,8 @@ inline std::vector<FitStation> FitStations(int num_scenes,
       if (!cover.ok()) continue;
       FitStation station;
       station.light = light;
-      station.samples = SelectSamples(receivers, light, cover->normalized_from_ray, false);
+      station.samples =
+          SelectSamples(receivers, light, receivers.options, cover->normalized_from_ray, false);
       if (station.samples.size() < 8) continue;
       station.summary = SummarizeSamples(station.samples, *cover, {0.0, 1.0});
       station.problem.map = {1024, 512};

@@ -36,16 +36,16 @@ struct TestScene {
 
 inline void ExpectAllFinite(const LightMatrix& matrix) {
   EXPECT_TRUE(matrix.map_from_world.allFinite()) << matrix.map_from_world;
-  for (const double value : {matrix.energy,
-                             matrix.energy_start,
-                             matrix.footprint.rms,
-                             matrix.footprint.median,
-                             matrix.footprint.p99,
-                             matrix.footprint.worst}) {
+  for (const double value : {matrix.figures.energy,
+                             matrix.search.energy_start,
+                             matrix.figures.footprint.rms,
+                             matrix.figures.footprint.median,
+                             matrix.figures.footprint.p99,
+                             matrix.figures.footprint.worst}) {
     EXPECT_TRUE(std::isfinite(value)) << matrix.BriefReport();
     EXPECT_GE(value, 0.0) << matrix.BriefReport();
   }
-  for (const TraceStep& step : matrix.trace) EXPECT_TRUE(std::isfinite(step.energy));
+  for (const TraceStep& step : matrix.search.trace) EXPECT_TRUE(std::isfinite(step.energy));
 }
 
 // The library's search on what Chong & Gortler minimise: squared footprints of their samples, with

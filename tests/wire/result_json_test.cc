@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "tests/io/testing.h"
+#include "optimizer/light_matrix.h"
 
 namespace lightfit {
 namespace {
@@ -20,13 +21,13 @@ LightMatrix SomeMatrix() {
       4.0, 50.0, 6.0, 7.0,                        //
       0.01, 0.02, 0.03, 0.5,                      //
       0.001, 0.002, 0.003, 1.0;
-  matrix.energy = 12.5;
-  matrix.energy_start = 25.0;
-  matrix.footprint = {0.1, 0.2, 0.3, 0.4};
-  matrix.samples = {1, 2, 3, 4, 5, 6, 7, 8};
-  matrix.stop_reason = StopReason::kAxisAtLimit;
-  matrix.evaluations = 99;
-  matrix.trace = {{"start", 1, 25.0}, {"refine", 99, 12.5}};
+  matrix.figures.energy = 12.5;
+  matrix.search.energy_start = 25.0;
+  matrix.figures.footprint = {0.1, 0.2, 0.3, 0.4};
+  matrix.figures.samples = {1, 2, 3, 4, 5, 6, 7, 8};
+  matrix.search.stop_reason = StopReason::kAxisAtLimit;
+  matrix.search.evaluations = 99;
+  matrix.search.trace = {{"start", 1, 25.0}, {"refine", 99, 12.5}};
   return matrix;
 }
 
@@ -113,7 +114,7 @@ TEST(FitResult, AFailedLightKeepsItsStatusAndHasNoMatrix) {
 
 TEST(FitResult, RatiosToZeroAreLeftOut) {
   FitReport report = SomeReport();
-  report.lights[0].matrix->energy_start = 0.0;
+  report.lights[0].matrix->search.energy_start = 0.0;
   report.lights[0].as_published.emplace();
   const v1::Energies energies = FitResultToProto(report).lights(0).energies();
   EXPECT_FALSE(energies.has_final_over_start());
@@ -153,7 +154,7 @@ TEST(FitResultJson, RefusesNumbersThatAreNotFinite) {
     const auto json = FitResultToJson(FitResultToProto(report));
     EXPECT_TRUE(HasAll(json.status().message(), {"result.lights[0].map_from_world.m[6]"}));
     report = SomeReport();
-    report.lights[0].matrix->trace[1].energy = bad;
+    report.lights[0].matrix->search.trace[1].energy = bad;
     EXPECT_FALSE(FitResultToJson(FitResultToProto(report)).ok());
   }
 }

@@ -12,6 +12,7 @@
 #include "render/readback_image.h"
 #include "tests/jobs/compare/compare_scene.h"
 #include "tests/testing/matchers.h"
+#include "optimizer/light_matrix.h"
 
 namespace lightfit {
 namespace {
@@ -103,9 +104,9 @@ TEST_F(CompareMapsTest, EnergyIsThatOfTheFit) {
     ASSERT_THAT(fit, IsOk());
     const ComparedMap& row = *comparison.Find(name);
     EXPECT_EQ(row.map_from_world, fit->map_from_world);
-    EXPECT_LT(RelativeError(row.figures->energy, fit->energy), kSumTolerance);
-    EXPECT_LT(RelativeError(row.figures->footprint.worst, fit->footprint.worst), kSumTolerance);
-    EXPECT_EQ(comparison.samples.used, fit->samples.used);
+    EXPECT_LT(RelativeError(row.figures->energy, fit->figures.energy), kSumTolerance);
+    EXPECT_LT(RelativeError(row.figures->footprint.worst, fit->figures.footprint.worst), kSumTolerance);
+    EXPECT_EQ(comparison.samples.used, fit->figures.samples.used);
   }
 }
 

@@ -44,7 +44,8 @@ struct TwoFrames {
 Samples SamplesIn(const SyntheticReadback& frame, const Light& light, const RayCover& cover) {
   const Surfaces receivers =
       *FindSurfaces(frame.View(), 1u << light.shadow_bit, testing::SquaredFootprints().samples);
-  return SelectSamples(receivers, light, cover.normalized_from_ray, /*with_edge_normals=*/false);
+  return SelectSamples(
+      receivers, light, receivers.options, cover.normalized_from_ray, /*with_edge_normals=*/false);
 }
 
 TEST(MergeSummaries, EqualsSummaryOfTheUnion) {
@@ -175,7 +176,7 @@ TEST(SummaryTotal, IsTheSameToTheLastBitInAnyOrderAndGrouping) {
         ASSERT_EQ(matrix.ok(), first_matrix.ok());
         if (!matrix.ok()) continue;
         EXPECT_TRUE(SameBits(matrix->map_from_world, first_matrix->map_from_world));
-        EXPECT_EQ(matrix->energy, first_matrix->energy);
+        EXPECT_EQ(matrix->figures.energy, first_matrix->figures.energy);
         ++num_fitted;
       }
     }
@@ -299,11 +300,11 @@ TEST(SummarizeInMap, RoundsOverFramesFindTheBestSumOfFootprints) {
           last_sum += testing::MetricOf(*best, frame.View(), light, options);
         }
         if (round == 0) first_sum = last_sum;
-        EXPECT_GE(best->energy, last_sum * (1.0 - 1e-5));
+        EXPECT_GE(best->figures.energy, last_sum * (1.0 - 1e-5));
       }
       if (!best.ok() || last_sum == 0.0) continue;
       // After some rounds weights and map agree, and the bound is the sum.
-      EXPECT_LE(best->energy, last_sum * 1.01) << light.name << ", seed " << seed;
+      EXPECT_LE(best->figures.energy, last_sum * 1.01) << light.name << ", seed " << seed;
       EXPECT_LE(last_sum, first_sum * 1.02) << light.name << ", seed " << seed;
       gain = std::min(gain, last_sum / first_sum);
       ++num_fitted;

@@ -30,7 +30,9 @@ TEST(FootprintImage, AgreesWithTheStatisticsAtTheSamples) {
       const auto matrix = FitLight(scene.View(), light, kMap);
       if (!matrix.ok()) continue;
       const auto image = FootprintImage(scene.View(), light, matrix->map_from_world);
-      const auto samples = SampleImage(scene.View(), light);
+      const auto surfaces = FindSurfaces(scene.View(), ~0u, {});
+      ASSERT_THAT(surfaces, IsOk());
+      const auto samples = SampleImage(*surfaces, light, {});
       ASSERT_THAT(image, IsOk());
       ASSERT_THAT(samples, IsOk());
       double sum = 0.0, worst = 0.0;
@@ -44,9 +46,9 @@ TEST(FootprintImage, AgreesWithTheStatisticsAtTheSamples) {
         worst = std::max<double>(worst, (*image)[i]);
         ++count;
       }
-      EXPECT_EQ(count, matrix->samples.used);
-      EXPECT_LE(RelativeError(std::sqrt(sum / count), matrix->footprint.rms), 1e-5);
-      EXPECT_LE(RelativeError(worst, matrix->footprint.worst), 1e-5);
+      EXPECT_EQ(count, matrix->figures.samples.used);
+      EXPECT_LE(RelativeError(std::sqrt(sum / count), matrix->figures.footprint.rms), 1e-5);
+      EXPECT_LE(RelativeError(worst, matrix->figures.footprint.worst), 1e-5);
       ++num_compared;
     }
   }

@@ -54,7 +54,7 @@ std::vector<Eigen::Vector3d> RaysOf(const Surfaces& receivers, const Light& ligh
 bool BoxesSurround(const Surfaces& receivers, const DepthTiles& tiles, const Light& light) {
   const Matrix34d ray_from_screen = RayFromWorld(light) * receivers.world_from_screen;
   std::vector<Eigen::Vector3d> corners;
-  ForEachTile(tiles.grids[0], {}, [&](const DepthTile& tile) {
+  ForEachTile(tiles.grids[0], [&](const DepthTile& tile) {
     for (const Eigen::Vector4d& corner : Corners(tile)) corners.push_back(ray_from_screen * corner);
   });
   return !FeasibleAxis(corners).has_value();

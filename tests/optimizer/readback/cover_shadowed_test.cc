@@ -241,9 +241,10 @@ TEST(CoverShadowed, FocusedMapsAreNeverLarger) {
       const auto a = FitLight(scene.View(), light, {512, 512}, shadowed);
       const auto b = FitLight(scene.View(), light, {512, 512}, all);
       if (!a.ok() || !b.ok()) continue;
-      EXPECT_LE(a->energy, b->energy * (1.0 + 1e-9)) << light.name << ", seed " << seed;
+      EXPECT_LE(a->figures.energy, b->figures.energy * (1.0 + 1e-9))
+          << light.name << ", seed " << seed;
       ++num_compared;
-      num_smaller += static_cast<int>(a->energy < 0.9 * b->energy);
+      num_smaller += static_cast<int>(a->figures.energy < 0.9 * b->figures.energy);
     }
   }
   EXPECT_GE(num_compared, 10);

@@ -5,10 +5,10 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "optimizer/fit_options.h"
 #include "optimizer/readback/surfaces.h"
 #include "tests/testing/matchers.h"
 #include "tests/testing/plane_readback.h"
-#include "optimizer/fit_options.h"
 
 namespace lightfit {
 namespace {
@@ -27,7 +27,7 @@ SampleCounts CountSamples(const PlaneReadback& readback,
   const absl::StatusOr<Surfaces> receivers =
       FindSurfaces(readback.View(), 1u << light.shadow_bit, options);
   EXPECT_THAT(receivers, IsOk());
-  const Samples samples = SelectSamples(*receivers, light, kLightSpace, false);
+  const Samples samples = SelectSamples(*receivers, light, receivers->options, kLightSpace, false);
   EXPECT_EQ(samples.counts.used, static_cast<int64_t>(samples.size()));
   const SampleCounts& c = samples.counts;
   EXPECT_EQ(c.used, c.candidates - c.background - c.discontinuity - c.facing_away - c.edge_on);
@@ -193,7 +193,7 @@ TEST(SelectSamples, RaysPointFromTheLightToTheReceivers) {
   const PlaneReadback readback = FloorWithVerticalEdge();
   const Surfaces receivers = *FindSurfaces(readback.View(), 1u, {});
   for (const Light& light : {kSun, Light::Point("lamp", {1.0, 2.0, 4.0})}) {
-    const Samples samples = SelectSamples(receivers, light, kLightSpace, false);
+    const Samples samples = SelectSamples(receivers, light, receivers.options, kLightSpace, false);
     ASSERT_EQ(samples.size(), receivers.boundary.size());
     for (size_t i = 0; i < samples.size(); ++i) {
       const Eigen::Vector3d expected =
@@ -206,8 +206,8 @@ TEST(SelectSamples, RaysPointFromTheLightToTheReceivers) {
 TEST(SelectSamples, KnowsEdgeNormalsOnlyWhenAsked) {
   const PlaneReadback readback = FloorWithVerticalEdge();
   const Surfaces with = *FindSurfaces(readback.View(), 1u, {});
-  EXPECT_FALSE(SelectSamples(with, kSun, kLightSpace, false).has_edge_normals());
-  const Samples samples = SelectSamples(with, kSun, kLightSpace, true);
+  EXPECT_FALSE(SelectSamples(with, kSun, with.options, kLightSpace, false).has_edge_normals());
+  const Samples samples = SelectSamples(with, kSun, with.options, kLightSpace, true);
   ASSERT_TRUE(samples.has_edge_normals());
   for (size_t i = 0; i < samples.size(); ++i) {
     EXPECT_THAT(samples.At(i).edge_normal, MatrixNear(Eigen::Vector2d(1.0, 0.0), 0.1));

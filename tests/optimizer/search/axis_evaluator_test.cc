@@ -45,8 +45,8 @@ TEST(SampleEvaluator, GivesTheSameFromReceiversAsFromTheirRays) {
     AffineProblem problem;
     problem.map = {1024, 1024};
     problem.affine = options.affine;
-    problem.normalized_from_ray = prepared->summary.cover.normalized_from_ray;
-    const MetricWeights metric = prepared->summary.metric;
+    problem.normalized_from_ray = prepared->normalized_from_ray();
+    const MetricWeights metric = WeightsOf(options.metric, options.along_edge_share);
     SampleEvaluator from_receivers(samples, receivers, metric, problem, options.min_w);
     SampleEvaluator from_rays(samples, rays, metric, problem, options.min_w);
     int num_usable = 0;

@@ -27,17 +27,15 @@ TEST(GlobalSearch, NeverAboveItsStartAndEveryStationImproves) {
     for (const Refiner refiner : {Refiner::kTinySolver, Refiner::kCeres}) {
       SummaryEvaluator evaluator(station.summary, station.problem, kMinW);
       const AffineFit start = station.Start(evaluator);
-      std::string report;
-      const SearchResult result =
-          GlobalSearch(station.summary, evaluator, start, 10, refiner, &report);
+      const SearchResult result = GlobalSearch(station.summary, evaluator, start, 10, refiner);
       EXPECT_LE(result.fit.energy, start.energy);
-      EXPECT_EQ(result.trace.front().energy, start.energy);
-      EXPECT_EQ(result.trace.back().energy, result.fit.energy);
-      for (size_t i = 1; i < result.trace.size(); ++i) {
-        EXPECT_LE(result.trace[i].energy, result.trace[i - 1].energy);
-        EXPECT_GE(result.trace[i].evaluations, result.trace[i - 1].evaluations);
+      EXPECT_EQ(result.report.trace.front().energy, start.energy);
+      EXPECT_EQ(result.report.trace.back().energy, result.fit.energy);
+      for (size_t i = 1; i < result.report.trace.size(); ++i) {
+        EXPECT_LE(result.report.trace[i].energy, result.report.trace[i - 1].energy);
+        EXPECT_GE(result.report.trace[i].evaluations, result.report.trace[i - 1].evaluations);
       }
-      EXPECT_EQ(report.empty(), refiner == Refiner::kTinySolver);
+      EXPECT_EQ(result.report.solver_report.empty(), refiner == Refiner::kTinySolver);
     }
   }
 }
@@ -61,13 +59,13 @@ TEST(GlobalSearch, NeverAbovePublishedAndFocused) {
       for (const FitOptions& options : {published, focused}) {
         const auto other = FitLight(scene.View(), light, kMap, options);
         ASSERT_THAT(other, testing::IsOk());
-        EXPECT_LE(best->energy, other->energy * (1.0 + 1e-9))
+        EXPECT_LE(best->figures.energy, other->figures.energy * (1.0 + 1e-9))
             << light.name << ", seed " << seed << ", search " << static_cast<int>(options.search);
       }
       const auto local = FitLight(scene.View(), light, kMap, line_search);
       ASSERT_THAT(local, testing::IsOk());
-      worst_excess = std::max(worst_excess, best->energy / local->energy - 1.0);
-      EXPECT_LE(best->energy, best->energy_start);
+      worst_excess = std::max(worst_excess, best->figures.energy / local->figures.energy - 1.0);
+      EXPECT_LE(best->figures.energy, best->search.energy_start);
       ++num_compared;
     }
   }
@@ -85,9 +83,8 @@ TEST(GlobalSearch, RefinersEndAtNearlyTheSameEnergy) {
     for (const Refiner refiner : {Refiner::kTinySolver, Refiner::kCeres}) {
       SummaryEvaluator evaluator(station.summary, station.problem, kMinW);
       const AffineFit start = station.Start(evaluator);
-      std::string report;
       energies[static_cast<int>(refiner)] =
-          GlobalSearch(station.summary, evaluator, start, 10, refiner, &report).fit.energy;
+          GlobalSearch(station.summary, evaluator, start, 10, refiner).fit.energy;
     }
     differences.push_back(testing::RelativeError(energies[0], energies[1]));
   }

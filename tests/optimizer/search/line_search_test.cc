@@ -27,12 +27,12 @@ TEST(RotationLineSearch, NeverIncreasesEnergy) {
         const AffineFit start = station.Start(evaluator);
         const SearchResult result = RotationLineSearch(evaluator, start, 3);
         EXPECT_LE(result.fit.energy, start.energy);
-        ASSERT_FALSE(result.trace.empty());
-        EXPECT_EQ(result.trace.front().energy, start.energy);
-        EXPECT_EQ(result.trace.back().energy, result.fit.energy);
-        for (size_t i = 1; i < result.trace.size(); ++i) {
-          EXPECT_LT(result.trace[i].energy, result.trace[i - 1].energy);
-          EXPECT_GT(result.trace[i].evaluations, result.trace[i - 1].evaluations);
+        ASSERT_FALSE(result.report.trace.empty());
+        EXPECT_EQ(result.report.trace.front().energy, start.energy);
+        EXPECT_EQ(result.report.trace.back().energy, result.fit.energy);
+        for (size_t i = 1; i < result.report.trace.size(); ++i) {
+          EXPECT_LT(result.report.trace[i].energy, result.report.trace[i - 1].energy);
+          EXPECT_GT(result.report.trace[i].evaluations, result.report.trace[i - 1].evaluations);
         }
       }
     }
@@ -71,9 +71,9 @@ TEST(RotationLineSearch, SaysWhyItStopped) {
     for (const int rounds : {1, 200}) {
       SummaryEvaluator evaluator(station.summary, station.problem, kMinW);
       const SearchResult result = RotationLineSearch(evaluator, station.Start(evaluator), rounds);
-      const bool converged = result.stop_reason == StopReason::kConverged;
+      const bool converged = result.report.stop_reason == StopReason::kConverged;
       if (!converged) {
-        EXPECT_EQ(result.stop_reason, StopReason::kRoundLimit);
+        EXPECT_EQ(result.report.stop_reason, StopReason::kRoundLimit);
       }
       if (rounds == 200) {
         EXPECT_TRUE(converged);

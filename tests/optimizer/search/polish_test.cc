@@ -25,7 +25,7 @@ TEST(PolishAxis, NeverWorseThanItsStart) {
     for (const FitStation& station : FitStations(2, affine)) {
       const AffineFit start = station.Start();
       for (const Polish polish : {Polish::kQuick, Polish::kThorough, Polish::kExact}) {
-        const RefineResult result =
+        const SearchResult result =
             PolishAxis(station.summary, station.problem, kMinW, polish, start);
         EXPECT_LE(result.fit.energy, start.energy);
         EXPECT_TRUE(result.fit.map_from_ray.allFinite());

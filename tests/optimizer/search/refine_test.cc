@@ -114,13 +114,13 @@ TEST(RefineAxis, NeverWorseThanItsStart) {
     for (const FitStation& station : FitStations(5, affine)) {
       const AffineFit start = station.Start();
       for (const Refiner refiner : {Refiner::kTinySolver, Refiner::kCeres}) {
-        const RefineResult result =
+        const SearchResult result =
             RefineAxis(station.summary, station.problem, kMinW, refiner, start);
         EXPECT_LE(result.fit.energy, start.energy);
         EXPECT_LE(RelativeError(result.fit.energy,
                                 Energy(result.fit.map_from_ray, station.samples, {0.0, 1.0})),
                   1e-9);
-        EXPECT_EQ(result.report.empty(), refiner == Refiner::kTinySolver);
+        EXPECT_EQ(result.report.solver_report.empty(), refiner == Refiner::kTinySolver);
         num_improved += static_cast<int>(result.fit.energy < 0.99 * start.energy);
       }
     }
@@ -134,9 +134,9 @@ TEST(RefineAxis, CeresAndTinySolverAgree) {
   std::vector<double> differences;
   for (const FitStation& station : FitStations(8, Affine::kMinEnergyParallelogram)) {
     const AffineFit start = station.Start();
-    const RefineResult tiny =
+    const SearchResult tiny =
         RefineAxis(station.summary, station.problem, kMinW, Refiner::kTinySolver, start);
-    const RefineResult ceres =
+    const SearchResult ceres =
         RefineAxis(station.summary, station.problem, kMinW, Refiner::kCeres, start);
     differences.push_back(RelativeError(tiny.fit.energy, ceres.fit.energy));
   }

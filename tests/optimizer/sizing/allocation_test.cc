@@ -165,10 +165,11 @@ TEST(AllocateBudget, KeepsTheBudgetAndBeatsAnEqualSplit) {
         if (!map.matrix.ok()) continue;
         ++num_maps;
         texels += TexelsOf(map.matrix->map);
-        energy += map.matrix->energy;
+        energy += map.matrix->figures.energy;
         EXPECT_EQ(map.matrix->map.width % 64, 0);
         EXPECT_EQ(map.matrix->map.height % 64, 0);
-        EXPECT_NEAR(map.matrix->energy / map.ideal_energy, 1.0, 0.25);  // at sides of few 64s
+        EXPECT_NEAR(
+            map.matrix->figures.energy / map.ideal_energy, 1.0, 0.25);  // at sides of few 64s
       }
       EXPECT_EQ(texels, allocation->texels);
       EXPECT_LE(texels, budget_texels);
@@ -181,7 +182,7 @@ TEST(AllocateBudget, KeepsTheBudgetAndBeatsAnEqualSplit) {
         const absl::StatusOr<LightMatrix> fit =
             Fit(*lights[i].summary, lights[i].light, {side, side}, options);
         ASSERT_TRUE(fit.ok()) << fit.status();
-        equal += fit->energy;
+        equal += fit->figures.energy;
       }
       EXPECT_LT(allocation->ideal_energy, equal * 1.001);
       if (budget_texels > 2'000'000) {
@@ -206,7 +207,7 @@ TEST(AllocateBudget, GivesMoreToALightOfMoreWeight) {
       AllocateBudget(lights, 4'000'000, MapSizeRules(), options);
   ASSERT_TRUE(weighted.ok()) << weighted.status();
   EXPECT_GT(weighted->maps[0].ideal_texels, 1.2 * equal->maps[0].ideal_texels);
-  EXPECT_LT(weighted->maps[0].matrix->energy, equal->maps[0].matrix->energy);
+  EXPECT_LT(weighted->maps[0].matrix->figures.energy, equal->maps[0].matrix->figures.energy);
 }
 
 TEST(AllocateBudget, OneFailingLightLeavesItsTexelsToTheOthers) {

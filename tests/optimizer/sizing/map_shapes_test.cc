@@ -55,7 +55,7 @@ double FittedEnergy(const Summary& summary,
                     const FitOptions& options) {
   const absl::StatusOr<LightMatrix> fit = FitMatrix({light, summary}, map, options);
   EXPECT_THAT(fit, IsOk());
-  return fit.ok() ? fit->energy : 0.0;
+  return fit.ok() ? fit->figures.energy : 0.0;
 }
 
 // math.md (9) and (15): stretching a map leaves its shape and divides A and B by other sizes. The
@@ -63,10 +63,9 @@ double FittedEnergy(const Summary& summary,
 TEST(MapShapes, FixedShapesScaleAsFormulaFifteenSays) {
   constexpr double kTolerance = 1e-9;
   ForEachSummary(2, [](const Summary& summary, const Light& light, const FitOptions& options) {
-    const absl::StatusOr<SearchOutcome> outcome =
-        SearchAxis({light, summary}, {1024, 512}, options);
+    const absl::StatusOr<SearchResult> outcome = SearchAxis({light, summary}, {1024, 512}, options);
     ASSERT_TRUE(outcome.ok()) << outcome.status();
-    const Eigen::Matrix3d fitted = outcome->result.fit.map_from_ray;
+    const Eigen::Matrix3d fitted = outcome->fit.map_from_ray;
     const auto energy = [&](double width, double height) {
       const Eigen::Vector3d stretch(width / 1024, height / 512, 1.0);
       const Eigen::Matrix3d map_from_ray = stretch.asDiagonal() * fitted;
@@ -192,7 +191,7 @@ TEST(SummarizeForAnyAspect, LowersTheBoundToWhatFitsOfTheReadBackReach) {
                            static_cast<int>(std::lround(4096 / std::sqrt(aspect)))};
       const absl::StatusOr<LightMatrix> fit = FitLight(scene.View(), light, map, options);
       ASSERT_TRUE(fit.ok()) << fit.status();
-      EXPECT_NEAR(after->Energy(map.width, map.height) / fit->energy, 1.0, kTolerance)
+      EXPECT_NEAR(after->Energy(map.width, map.height) / fit->figures.energy, 1.0, kTolerance)
           << light.name;
     }
   }

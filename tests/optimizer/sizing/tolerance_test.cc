@@ -38,8 +38,11 @@ std::vector<double> SortedFootprints(const TestScene& scene,
       FindSurfaces(scene.View(), uint32_t{1} << light.shadow_bit, options.samples);
   const absl::StatusOr<Eigen::Matrix3d> map_from_ray = MapFromRay(matrix.map_from_world, light);
   EXPECT_TRUE(receivers.ok() && map_from_ray.ok());
-  const Samples samples =
-      SelectSamples(*receivers, light, Eigen::Matrix3d::Identity(), /*with_edge_normals=*/false);
+  const Samples samples = SelectSamples(*receivers,
+                                        light,
+                                        receivers->options,
+                                        Eigen::Matrix3d::Identity(),
+                                        /*with_edge_normals=*/false);
   std::vector<double> footprints;
   for (size_t i = 0; i < samples.size(); ++i) {
     const Sample sample = samples.At(i);
@@ -134,7 +137,7 @@ TEST(MeetTolerance, NoSmallerMapOfAllSizesHolds) {
           const MapSize map = {width, height};
           if (TexelsOf(map) >= least) continue;
           const absl::StatusOr<LightMatrix> fit = FitMatrix({light, *summary}, map, options);
-          if (fit.ok() && fit->footprint.rms <= tolerance.limit_px) least = TexelsOf(map);
+          if (fit.ok() && fit->figures.footprint.rms <= tolerance.limit_px) least = TexelsOf(map);
         }
       }
       EXPECT_EQ(TexelsOf(met->matrix.map), least) << light.name;

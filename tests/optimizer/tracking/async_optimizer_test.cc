@@ -36,7 +36,7 @@ void ExpectSame(const FrameLight& light, const absl::StatusOr<TrackedMatrix>& ex
   EXPECT_TRUE(SameBytes(light.map_from_world, expected->matrix.map_from_world)) << light.name;
   EXPECT_EQ(light.map.width, expected->matrix.map.width);
   EXPECT_EQ(light.map.height, expected->matrix.map.height);
-  EXPECT_EQ(light.energy, expected->matrix.energy);
+  EXPECT_EQ(light.energy, expected->matrix.figures.energy);
   EXPECT_EQ(light.action, expected->action);
 }
 

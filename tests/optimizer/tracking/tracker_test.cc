@@ -68,7 +68,7 @@ TEST(Tracker, AtStabilityZeroIsEveryFramesOwnFit) {
       if (!fitted[light].ok()) continue;
       ASSERT_THAT(tracked[frame][light], IsOk());
       EXPECT_EQ(tracked[frame][light]->matrix.map_from_world, fitted[light]->map_from_world);
-      EXPECT_EQ(tracked[frame][light]->matrix.energy, fitted[light]->energy);
+      EXPECT_EQ(tracked[frame][light]->matrix.figures.energy, fitted[light]->figures.energy);
       EXPECT_EQ(tracked[frame][light]->frames_kept, 0);
       ++num_fitted;
     }
@@ -162,8 +162,8 @@ TEST(Tracker, FiguresAreThoseOfThisFrame) {
       const auto figures = EvaluateMatrix(
           walk.frames[frame].View(), walk.lights[light], matrix.map_from_world, kMap, options.fit);
       ASSERT_THAT(figures, IsOk());
-      EXPECT_LE(RelativeError(matrix.energy, figures->energy), 1e-5);
-      EXPECT_LE(RelativeError(matrix.footprint.median, figures->footprint.median), 1e-5);
+      EXPECT_LE(RelativeError(matrix.figures.energy, figures->energy), 1e-5);
+      EXPECT_LE(RelativeError(matrix.figures.footprint.median, figures->footprint.median), 1e-5);
       num_kept += tracked[frame][light]->action == TrackerAction::kKept;
     }
   }
@@ -211,12 +211,14 @@ TEST(Tracker, ReplacesBelowTheThreshold) {
             const auto kept =
                 EvaluateMatrix(readback, walk.lights[light], before[light], kMap, options.fit);
             ASSERT_THAT(kept, IsOk());
-            EXPECT_LT(std::pow(fresh[light]->footprint.median / kept->footprint.median, 2.0),
-                      threshold);
+            EXPECT_LT(
+                std::pow(fresh[light]->figures.footprint.median / kept->footprint.median, 2.0),
+                threshold);
             ++num_replaced;
           } else if (action == TrackerAction::kKept || action == TrackerAction::kShifted) {
-            const double median = tracked[light]->matrix.footprint.median;
-            EXPECT_GE(std::pow(fresh[light]->footprint.median / median, 2.0), threshold * 0.999999);
+            const double median = tracked[light]->matrix.figures.footprint.median;
+            EXPECT_GE(std::pow(fresh[light]->figures.footprint.median / median, 2.0),
+                      threshold * 0.999999);
             ++num_kept;
           }
           before[light] = tracked[light]->matrix.map_from_world;
@@ -325,8 +327,8 @@ TEST(Tracker, StabilityTradesUpdatesForEnergy) {
         for (size_t light = 0; light < walk.lights.size(); ++light) {
           if (!tracked[frame][light].ok() || !tightest[frame][light].ok()) continue;
           updates.back() += tracked[frame][light]->frames_kept == 0;
-          log_ratio.back() += std::log(tracked[frame][light]->matrix.energy /
-                                       tightest[frame][light]->matrix.energy);
+          log_ratio.back() += std::log(tracked[frame][light]->matrix.figures.energy /
+                                       tightest[frame][light]->matrix.figures.energy);
         }
       }
     }
