@@ -257,9 +257,7 @@ absl::Status WriteLights(const std::string& path, const std::vector<Light>& ligh
 absl::Status WriteOutputs(const RenderFlags& flags, const Inputs& inputs, const Outcome& outcome) {
   if (!flags.output_path.empty()) {
     absl::Status status =
-        WriteThroughTemporary(flags.output_path, [&](const std::string& temporary) {
-          return WriteReadbackExr(temporary, outcome.readback.View(), inputs.lights);
-        });
+        WriteReadbackExr(flags.output_path, outcome.readback.View(), inputs.lights);
     if (!status.ok()) return status;
   }
   if (!flags.lights_path.empty()) {

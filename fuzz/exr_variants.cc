@@ -1,53 +1,118 @@
 #include "fuzz/exr_variants.h"
 
-#include <OpenImageIO/imageio.h>
+#include <Imath/half.h>
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfMultiPartOutputFile.h>
+#include <OpenEXR/ImfOutputPart.h>
+#include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfTiledOutputPart.h>
 
+#include <cstdint>
+#include <exception>
 #include <iostream>
+#include <utility>
 #include <vector>
 
 namespace lightfit::fuzz {
 namespace {
 
-bool WriteVariant(const OIIO::ImageSpec& spec,
-                  const std::vector<float>& pixels,
-                  const std::string& path) {
-  OIIO::ImageSpec depth = spec;
-  depth.nchannels = 2;
-  depth.channelnames = {"Z", "shadow"};
-  depth.channelformats = {OIIO::TypeDesc::FLOAT, OIIO::TypeDesc::UINT32};
-  depth.attribute("oiio:subimagename", "depth");
-  OIIO::ImageSpec shadows = depth;
-  shadows.channelnames = {"shadow.key", "shadow.sun"};
-  shadows.channelformats = {OIIO::TypeDesc::HALF, OIIO::TypeDesc::HALF};
-  shadows.attribute("oiio:subimagename", "shadows");
-  const OIIO::ImageSpec parts[] = {depth, shadows};
-  const auto output = OIIO::ImageOutput::create("openexr");
-  const bool is_written =
-      output->open(path, 2, parts) && output->write_image(OIIO::TypeDesc::FLOAT, pixels.data()) &&
-      output->open(path, shadows, OIIO::ImageOutput::AppendSubimage) &&
-      output->write_image(OIIO::TypeDesc::FLOAT, pixels.data()) && output->close();
-  if (!is_written) std::cerr << path << ": " << output->geterror() << "\n";
-  return is_written;
+struct Image {
+  Imf::Header header;
+  std::vector<float> depth;
+  std::vector<half> shadow;
+  std::vector<uint32_t> mask;  // all bits where there is shadow
+};
+
+Image ReadImage(const std::string& path) {
+  Imf::InputFile file(path.c_str());
+  Image image;
+  image.header = file.header();
+  const Imath::Box2i& window = image.header.dataWindow();
+  const Imath::V2i size = window.size() + Imath::V2i(1);
+  image.depth.resize(static_cast<size_t>(size.x) * size.y);
+  image.shadow.resize(image.depth.size());
+  auto channel = image.header.channels().begin();
+  Imf::FrameBuffer pixels;
+  pixels.insert(channel.name(), Imf::Slice::Make(Imf::FLOAT, image.depth.data(), window));
+  ++channel;
+  pixels.insert(channel.name(), Imf::Slice::Make(Imf::HALF, image.shadow.data(), window));
+  file.setFrameBuffer(pixels);
+  file.readPixels(window.min.y, window.max.y);
+  for (const half value : image.shadow) image.mask.push_back(value > 0.5F ? ~uint32_t{0} : 0);
+  return image;
+}
+
+struct Channel {
+  const char* name;
+  Imf::PixelType type;
+  const void* pixels;
+};
+
+// The header says which compression, and whether there are tiles.
+void WriteVariant(const Imf::Header& header, const Image& image, const std::string& path) {
+  const std::pair<const char*, std::vector<Channel>> parts[] = {
+      {"depth", {{"Z", Imf::FLOAT, image.depth.data()}, {"shadow", Imf::UINT, image.mask.data()}}},
+      {"shadows",
+       {{"shadow.key", Imf::HALF, image.shadow.data()},
+        {"shadow.sun", Imf::HALF, image.shadow.data()}}}};
+  std::vector<Imf::Header> headers;
+  std::vector<Imf::FrameBuffer> pixels;
+  for (const auto& [name, channels] : parts) {
+    Imf::Header& part = headers.emplace_back(header);
+    part.setName(name);
+    part.channels() = Imf::ChannelList();
+    Imf::FrameBuffer& slices = pixels.emplace_back();
+    for (const Channel& channel : channels) {
+      part.channels().insert(channel.name, Imf::Channel(channel.type));
+      slices.insert(channel.name,
+                    Imf::Slice::Make(channel.type, channel.pixels, header.dataWindow()));
+    }
+  }
+  Imf::MultiPartOutputFile file(path.c_str(), headers.data(), static_cast<int>(headers.size()));
+  for (int i = 0; i < file.parts(); ++i) {
+    if (header.type() == Imf::TILEDIMAGE) {
+      Imf::TiledOutputPart part(file, i);
+      part.setFrameBuffer(pixels[i]);
+      part.writeTiles(0, part.numXTiles() - 1, 0, part.numYTiles() - 1);
+    } else {
+      Imf::OutputPart part(file, i);
+      part.setFrameBuffer(pixels[i]);
+      part.writePixels(header.dataWindow().size().y + 1);
+    }
+  }
 }
 
 }  // namespace
 
 bool WriteExrVariants(const std::string& path, const std::string& folder) {
-  const auto input = OIIO::ImageInput::create("openexr");
-  OIIO::ImageSpec spec;
-  std::vector<float> pixels;
-  if (input->open(path, spec)) pixels.resize(spec.image_pixels() * 2);
-  if (pixels.empty() || !input->read_image(0, 0, 0, 2, OIIO::TypeDesc::FLOAT, pixels.data())) {
-    std::cerr << path << ": " << input->geterror() << "\n";
+  constexpr std::pair<const char*, Imf::Compression> kCompressions[] = {
+      {"none", Imf::NO_COMPRESSION},
+      {"rle", Imf::RLE_COMPRESSION},
+      {"zips", Imf::ZIPS_COMPRESSION},
+      {"piz", Imf::PIZ_COMPRESSION},
+      {"pxr24", Imf::PXR24_COMPRESSION},
+      {"b44", Imf::B44_COMPRESSION},
+      {"dwaa", Imf::DWAA_COMPRESSION}};
+  try {
+    const Image image = ReadImage(path);
+    Imf::Header header = image.header;
+    header.setType(Imf::SCANLINEIMAGE);
+    for (const auto& [name, compression] : kCompressions) {
+      header.compression() = compression;
+      WriteVariant(header, image, folder + "/" + name);
+    }
+    header.compression() = Imf::ZIP_COMPRESSION;
+    header.setType(Imf::TILEDIMAGE);
+    header.setTileDescription(Imf::TileDescription(16, 16));
+    WriteVariant(header, image, folder + "/zip_tiled");
+  } catch (const std::exception& e) {
+    std::cerr << path << ": " << e.what() << "\n";
     return false;
   }
-  for (const char* compression : {"none", "rle", "zips", "piz", "pxr24", "b44", "dwaa"}) {
-    spec.attribute("compression", compression);
-    if (!WriteVariant(spec, pixels, folder + "/" + compression)) return false;
-  }
-  spec.attribute("compression", "zip");
-  spec.tile_width = spec.tile_height = 16;
-  return WriteVariant(spec, pixels, folder + "/zip_tiled");
+  return true;
 }
 
 }  // namespace lightfit::fuzz

@@ -1,8 +1,7 @@
 // fuzz/exr_variants.h
 //
 // An OpenEXR file in the other forms that the format has: a part of its own for shadows, a UINT
-// channel, tiles, and every kind of compression. Apart, as OpenImageIO and protobuf do not go into
-// one source.
+// channel, tiles, and every kind of compression.
 #pragma once
 
 #include <string>

@@ -37,7 +37,7 @@ absl::StatusOr<Camera> internal::CameraFromExr(const ExrInput& exr,
     if (!world_to_camera || !world_to_ndc) continue;
     CameraExrOptions file_options = options;
     if (options.pixel_aspect == 0.0) {
-      file_options.pixel_aspect = exr.part(i).get_float_attribute("PixelAspectRatio", 1.0F);
+      file_options.pixel_aspect = exr.pixel_aspect(i);
     }
     absl::StatusOr<Camera> camera = CameraFromExrMatrices(
         *world_to_camera, *world_to_ndc, exr.width(part), exr.height(part), file_options);
@@ -45,18 +45,11 @@ absl::StatusOr<Camera> internal::CameraFromExr(const ExrInput& exr,
     return absl::Status(camera.status().code(),
                         absl::StrCat(exr.path(), ": ", camera.status().message()));
   }
-  std::vector<std::string> present;
-  for (const OIIO::ParamValue& attribute : exr.part(part).extra_attribs) {
-    if (attribute.type().aggregate != OIIO::TypeDesc::MATRIX44) continue;
-    // OpenImageIO's own name for V-Ray's camera-to-world matrix.
-    const bool renamed = attribute.name() == "worldtocamera";
-    present.push_back(renamed ? "cameraTransform" : attribute.name().string());
-  }
   return absl::NotFoundError(
       absl::StrFormat("%s: has no worldToCamera and worldToNDC attributes (matrices in its header: "
                       "%s): let the renderer write them, or give the camera as a file",
                       exr.path(),
-                      QuotedList(present)));
+                      QuotedList(exr.MatrixNames(part))));
 }
 
 absl::StatusOr<Camera> ReadCameraExr(const std::string& path, const CameraExrOptions& options) {

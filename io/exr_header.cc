@@ -1,7 +1,7 @@
 #include "io/exr_header.h"
 
 #include <cstdint>
-#include <fstream>
+#include <string>
 #include <utility>
 
 #include "absl/strings/str_format.h"
@@ -14,6 +14,10 @@ namespace {
 
 constexpr uint32_t kMultiPart = 0x1000;  // of the flags
 constexpr size_t kMaxNameBytes = 255;
+
+// A file with more is no read-back.
+constexpr int kMaxParts = 1024;
+constexpr int kMaxNames = 1 << 16;  // of attributes and channels, in all parts
 
 constexpr std::pair<absl::string_view, int64_t> kBytesOfTypes[] = {{"box2f", 16},
                                                                    {"box2i", 16},
@@ -53,19 +57,6 @@ std::string ReadName(std::istream& file) {
   return name;
 }
 
-// Bytes of the list of channels that begins here. OpenImageIO ends the program when a channel is of
-// a kind that it does not know.
-int64_t BytesOfChannels(std::istream& file) {
-  constexpr uint32_t kNumPixelTypes = 3;  // UINT, HALF, FLOAT
-  constexpr int64_t kBytesAfterType = 12;
-  const int64_t begin = file.tellg();
-  while (file && !ReadName(file).empty()) {
-    if (ReadUint32(file) >= kNumPixelTypes) return -1;
-    file.seekg(kBytesAfterType, std::ios::cur);
-  }
-  return file ? int64_t{file.tellg()} - begin : -1;
-}
-
 // Of the thumbnail that begins here.
 int64_t BytesOfPreview(std::istream& file) {
   const int64_t width = ReadUint32(file), height = ReadUint32(file);
@@ -73,54 +64,91 @@ int64_t BytesOfPreview(std::istream& file) {
   return width <= kMaxSide && height <= kMaxSide ? 8 + 4 * width * height : -1;
 }
 
-// What OpenEXR reads of an attribute that begins here and says that it has `size` bytes.
-int64_t BytesOfValue(std::istream& file, absl::string_view type, int64_t size) {
-  if (type == "chlist") return BytesOfChannels(file);
-  if (type == "preview") return BytesOfPreview(file);
-  if (type == "floatvector") return size / 4 * 4;
-  for (const auto& [name, bytes] : kBytesOfTypes) {
-    if (name == type) return bytes;
+class HeaderCheck {
+ public:
+  explicit HeaderCheck(std::istream& file) : file_(file) {
+    file_.seekg(0, std::ios::end);
+    num_bytes_ = file_.tellg();
+    file_.seekg(4);
   }
-  return size;
-}
 
-absl::Status CheckAttribute(std::istream& file, const std::string& name, int64_t num_bytes) {
-  const std::string type = ReadName(file);
-  const int64_t size = static_cast<int32_t>(ReadUint32(file));
-  const int64_t begin = file.tellg();
-  if (!file) return absl::InvalidArgumentError("its header is cut short");
-  if (name.size() > kMaxNameBytes || type.size() > kMaxNameBytes || size < 0 ||
-      size > num_bytes - begin || BytesOfValue(file, type, size) != size) {
-    return absl::InvalidArgumentError(absl::StrFormat(
-        "attribute \"%s\" of type \"%s\" says that it has %d bytes, where %d are left of the "
-        "file, or it is not as its type should be: the file is damaged or cut short",
-        Utf8Text(name.substr(0, kMaxNameBytes)),
-        Utf8Text(type.substr(0, kMaxNameBytes)),
-        size,
-        num_bytes - begin));
+  absl::Status Run() {
+    const bool is_multi_part = (ReadUint32(file_) & kMultiPart) != 0;
+    int num_parts = 0;
+    for (bool ends_part = true;;) {
+      const std::string name = ReadName(file_);
+      if (name.empty()) {
+        if (!is_multi_part || ends_part) return absl::OkStatus();
+        ends_part = true;
+        continue;
+      }
+      if (ends_part && ++num_parts > kMaxParts) {
+        return absl::InvalidArgumentError(
+            absl::StrFormat("has more than %d parts, want a read-back", kMaxParts));
+      }
+      ends_part = false;
+      if (absl::Status status = CheckAttribute(name); !status.ok()) return status;
+      if (++num_names_ > kMaxNames) {
+        return absl::InvalidArgumentError(absl::StrFormat(
+            "has more than %d attributes and channels, want a read-back", kMaxNames));
+      }
+    }
   }
-  file.seekg(begin + size);
-  return absl::OkStatus();
-}
+
+ private:
+  // Of the list of channels that begins here.
+  int64_t BytesOfChannels() {
+    constexpr int64_t kBytesAfterName = 16;
+    const int64_t begin = file_.tellg();
+    while (file_ && !ReadName(file_).empty()) {
+      file_.seekg(kBytesAfterName, std::ios::cur);
+      ++num_names_;
+    }
+    return file_ ? int64_t{file_.tellg()} - begin : -1;
+  }
+
+  // What OpenEXR reads of an attribute that begins here and says that it has `size` bytes.
+  int64_t BytesOfValue(absl::string_view type, int64_t size) {
+    if (type == "chlist") return BytesOfChannels();
+    if (type == "preview") return BytesOfPreview(file_);
+    if (type == "floatvector") return size / 4 * 4;
+    for (const auto& [name, bytes] : kBytesOfTypes) {
+      if (name == type) return bytes;
+    }
+    return size;
+  }
+
+  absl::Status CheckAttribute(const std::string& name) {
+    const std::string type = ReadName(file_);
+    const int64_t size = static_cast<int32_t>(ReadUint32(file_));
+    const int64_t begin = file_.tellg();
+    if (!file_) return absl::InvalidArgumentError("its header is cut short");
+    if (name.size() > kMaxNameBytes || type.size() > kMaxNameBytes || size < 0 ||
+        size > num_bytes_ - begin || BytesOfValue(type, size) != size) {
+      return absl::InvalidArgumentError(absl::StrFormat(
+          "attribute \"%s\" of type \"%s\" says that it has %d bytes, where %d are left of the "
+          "file, or it is not as its type should be: the file is damaged or cut short",
+          Utf8Text(name.substr(0, kMaxNameBytes)),
+          Utf8Text(type.substr(0, kMaxNameBytes)),
+          size,
+          num_bytes_ - begin));
+    }
+    file_.seekg(begin + size);
+    return absl::OkStatus();
+  }
+
+  std::istream& file_;
+  int64_t num_bytes_ = 0;
+  int num_names_ = 0;
+};
 
 }  // namespace
 
-absl::Status CheckExrHeader(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  file.seekg(0, std::ios::end);
-  const int64_t num_bytes = file.tellg();
-  file.seekg(4);
-  const bool is_multi_part = (ReadUint32(file) & kMultiPart) != 0;
-  for (bool ends_part = true;;) {
-    const std::string name = ReadName(file);
-    if (name.empty()) {
-      if (!is_multi_part || ends_part) return absl::OkStatus();
-      ends_part = true;
-      continue;
-    }
-    ends_part = false;
-    if (absl::Status status = CheckAttribute(file, name, num_bytes); !status.ok()) return status;
-  }
+absl::Status CheckExrHeader(std::istream& file) {
+  absl::Status status = HeaderCheck(file).Run();
+  file.clear();
+  file.seekg(0);
+  return status;
 }
 
 }  // namespace lightfit::internal

@@ -1,61 +1,157 @@
 #include "io/exr_input.h"
 
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfMatrixAttribute.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStdIO.h>
+#include <OpenEXR/ImfTestFile.h>
+#include <OpenEXR/ImfTileDescription.h>
+#include <OpenEXR/ImfTiledInputPart.h>
+
 #include <algorithm>
 #include <exception>
 #include <filesystem>
+#include <fstream>
+#include <optional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/strip.h"
 #include "base/text_file.h"
 #include "io/exr_header.h"
+#include "io/exr_threads.h"
 #include "wire/utf8.h"
 
 namespace lightfit::internal {
 
 namespace {
 
-// A file with more parts than this is no read-back.
-constexpr int kMaxParts = 1024;
+using Window = Imath::Box2i;
 
 constexpr size_t kMaxListedNames = 40;
 
-absl::Status CheckPart(const std::string& path,
-                       int part,
-                       const OIIO::ImageSpec& spec,
-                       int64_t max_pixels) {
-  if (spec.deep) {
-    return absl::InvalidArgumentError(absl::StrFormat(
-        "%s: part %d is deep, want a flat image: render or flatten the depth", path, part));
+// Side of a tile, where the image is smaller: OpenEXR takes memory for whole tiles.
+constexpr int64_t kMaxTileSide = 1024;
+
+int64_t WidthOf(const Window& window) { return int64_t{window.max.x} - window.min.x + 1; }
+int64_t HeightOf(const Window& window) { return int64_t{window.max.y} - window.min.y + 1; }
+
+absl::Status CheckWindow(const char* name, const Window& window, int64_t max_pixels) {
+  const int64_t width = WidthOf(window), height = HeightOf(window);
+  if (width < 1 || height < 1) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("%s = %dx%d, want at least 1x1 pixels", name, width, height));
   }
-  const struct {
-    const char* name;
-    int64_t width, height;
-  } windows[] = {{"display window", spec.full_width, spec.full_height},
-                 {"data window", spec.width, spec.height}};
-  for (const auto& window : windows) {
-    if (window.width < 1 || window.height < 1) {
-      return absl::InvalidArgumentError(absl::StrFormat("%s: %s = %dx%d, want at least 1x1 pixels",
-                                                        path,
-                                                        window.name,
-                                                        window.width,
-                                                        window.height));
-    }
-    if (window.width * window.height > max_pixels) {
-      return absl::InvalidArgumentError(
-          absl::StrFormat("%s: %s = %dx%d, more than the limit of %d pixels (max_pixels): render "
-                          "the read-back smaller or raise the limit",
-                          path,
-                          window.name,
-                          window.width,
-                          window.height,
-                          max_pixels));
-    }
+  if (width * height > max_pixels) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("%s = %dx%d, more than the limit of %d pixels (max_pixels): render the "
+                        "read-back smaller or raise the limit",
+                        name,
+                        width,
+                        height,
+                        max_pixels));
   }
   return absl::OkStatus();
 }
 
+absl::Status CheckPart(int part, const Imf::Header& header, int64_t max_pixels) {
+  if (Imf::isDeepData(header.type())) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("part %d is deep, want a flat image: render or flatten the depth", part));
+  }
+  absl::Status status = CheckWindow("display window", header.displayWindow(), max_pixels);
+  if (status.ok()) status = CheckWindow("data window", header.dataWindow(), max_pixels);
+  if (!status.ok() || !Imf::isTiled(header.type())) return status;
+  const Imf::TileDescription& tile = header.tileDescription();
+  const int64_t max_width = std::max(kMaxTileSide, WidthOf(header.dataWindow()));
+  const int64_t max_height = std::max(kMaxTileSide, HeightOf(header.dataWindow()));
+  if (tile.xSize <= max_width && tile.ySize <= max_height) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrFormat("part %d has tiles of %dx%d pixels, want at most %dx%d: the file is damaged, "
+                      "or render the read-back without tiles",
+                      part,
+                      tile.xSize,
+                      tile.ySize,
+                      max_width,
+                      max_height));
+}
+
+// What OpenEXR says, in UTF-8, without the path.
+std::string WordsOf(const std::exception& error, const std::string& path) {
+  absl::string_view words = error.what();
+  absl::ConsumePrefix(&words, absl::StrCat("Cannot read image file \"", path, "\". "));
+  return Utf8Text(words);
+}
+
+template <typename T>
+constexpr Imf::PixelType kPixelType = Imf::FLOAT;
+template <>
+constexpr Imf::PixelType kPixelType<uint32_t> = Imf::UINT;
+
+// The channel over the data window.
+template <typename T>
+std::vector<T> ReadData(Imf::MultiPartInputFile& file, int part, const std::string& channel) {
+  const Imf::Header& header = file.header(part);
+  const Window& window = header.dataWindow();
+  std::vector<T> data(WidthOf(window) * HeightOf(window));
+  Imf::FrameBuffer pixels;
+  pixels.insert(channel, Imf::Slice::Make(kPixelType<T>, data.data(), window));
+  if (Imf::isTiled(header.type())) {
+    Imf::TiledInputPart input(file, part);
+    input.setFrameBuffer(pixels);
+    input.readTiles(0, input.numXTiles() - 1, 0, input.numYTiles() - 1);
+  } else {
+    Imf::InputPart input(file, part);
+    input.setFrameBuffer(pixels);
+    input.readPixels(window.min.y, window.max.y);
+  }
+  return data;
+}
+
+// Copies the rectangle that both windows share.
+template <typename T>
+std::vector<T> OnDisplay(const std::vector<T>& data,
+                         const Window& data_window,
+                         const Window& display_window,
+                         T outside) {
+  const int64_t data_width = WidthOf(data_window), width = WidthOf(display_window);
+  std::vector<T> display(width * HeightOf(display_window), outside);
+  const int64_t x_begin = std::max(data_window.min.x, display_window.min.x);
+  const int64_t y_begin = std::max(data_window.min.y, display_window.min.y);
+  const int64_t x_end = int64_t{std::min(data_window.max.x, display_window.max.x)} + 1;
+  const int64_t y_end = int64_t{std::min(data_window.max.y, display_window.max.y)} + 1;
+  for (int64_t y = y_begin; y < y_end && x_begin < x_end; ++y) {
+    const auto row = data.begin() + (y - data_window.min.y) * data_width;
+    std::copy(
+        row + (x_begin - data_window.min.x),
+        row + (x_end - data_window.min.x),
+        display.begin() + (y - display_window.min.y) * width + (x_begin - display_window.min.x));
+  }
+  return display;
+}
+
 }  // namespace
+
+// Two layers of streams below the file, which refers to them.
+struct ExrInput::Source {
+  explicit Source(const std::string& path)
+      : bytes(path, std::ios::binary), stream(bytes, path.c_str()) {}
+
+  std::ifstream bytes;
+  Imf::StdIFStream stream;
+  std::optional<Imf::MultiPartInputFile> file;
+};
+
+ExrInput::ExrInput(std::string path)
+    : path_(std::move(path)), source_(std::make_unique<Source>(path_)) {}
+ExrInput::~ExrInput() = default;
+ExrInput::ExrInput(ExrInput&& other) noexcept = default;
+ExrInput& ExrInput::operator=(ExrInput&& other) noexcept = default;
 
 absl::StatusOr<ExrInput> ExrInput::Open(const std::string& path, int64_t max_pixels) {
   std::error_code error;
@@ -65,52 +161,52 @@ absl::StatusOr<ExrInput> ExrInput::Open(const std::string& path, int64_t max_pix
   if (std::filesystem::is_directory(path, error)) {
     return absl::InvalidArgumentError(absl::StrCat(path, ": is a folder, want an EXR file"));
   }
-  // OpenImageIO reports through geterror(), but OpenEXR underneath throws.
   try {
-    // Only the OpenEXR reader is tried, so a file of another kind meets no other parser.
-    ExrInput exr(path, OIIO::ImageInput::create("openexr"));
-    if (exr.input_ == nullptr) {
-      return absl::InternalError(
-          absl::StrCat("OpenImageIO without OpenEXR: ", OIIO::geterror(), ": install its plug-in"));
-    }
-    OIIO::ImageSpec spec;
-    if (!exr.input_->valid_file(path)) {
+    ExrInput exr(path);
+    Source& source = *exr.source_;
+    if (!source.bytes) return absl::PermissionDeniedError(absl::StrCat(path, ": cannot be opened"));
+    if (!Imf::isOpenExrFile(source.stream)) {
       return absl::InvalidArgumentError(absl::StrCat(path, ": is not an OpenEXR file"));
     }
-    if (absl::Status status = InFile(path, CheckExrHeader(path)); !status.ok()) return status;
-    if (!exr.input_->open(path, spec)) {
-      return absl::InvalidArgumentError(
-          absl::StrCat(path, ": cannot be read as OpenEXR: ", Utf8Text(exr.input_->geterror())));
+    if (absl::Status status = InFile(path, CheckExrHeader(source.bytes)); !status.ok()) {
+      return status;
     }
-    for (int part = 0; part < kMaxParts && exr.input_->seek_subimage(part, 0); ++part) {
-      exr.parts_.push_back(exr.input_->spec());
-      if (absl::Status status = CheckPart(path, part, exr.parts_.back(), max_pixels);
-          !status.ok()) {
+    StartExrThreads();
+    source.file.emplace(source.stream);
+    for (int i = 0; i < source.file->parts(); ++i) {
+      const Imf::Header& header = source.file->header(i);
+      if (absl::Status status = InFile(path, CheckPart(i, header, max_pixels)); !status.ok()) {
         return status;
       }
-    }
-    exr.input_->geterror();  // the end of the parts is not an error
-    if (exr.parts_.empty()) {
-      return absl::InvalidArgumentError(absl::StrCat(path, ": has no image"));
+      Part& part = exr.parts_.emplace_back();
+      const Imf::ChannelList& channels = header.channels();
+      for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
+        part.channels.emplace_back(channel.name());
+        part.is_uint.push_back(channel.channel().type == Imf::UINT);
+      }
     }
     return exr;
   } catch (const std::exception& e) {
     return absl::InvalidArgumentError(
-        absl::StrCat(path, ": cannot be read as OpenEXR: ", Utf8Text(e.what())));
+        absl::StrCat(path, ": cannot be read as OpenEXR: ", WordsOf(e, path)));
   }
+}
+
+int ExrInput::width(int part) const {
+  return static_cast<int>(WidthOf(source_->file->header(part).displayWindow()));
+}
+
+int ExrInput::height(int part) const {
+  return static_cast<int>(HeightOf(source_->file->header(part).displayWindow()));
 }
 
 std::string ExrInput::quoted_name(ChannelId id) const {
   return absl::StrCat("\"", Utf8Text(name(id)), "\"");
 }
 
-bool ExrInput::is_uint(ChannelId id) const {
-  return parts_[id.part].channelformat(id.channel) == OIIO::TypeDesc::UINT32;
-}
-
 std::optional<ChannelId> ExrInput::Find(absl::string_view name, int preferred_part) const {
   const auto find_in = [&](int part) -> std::optional<ChannelId> {
-    const std::vector<std::string>& names = parts_[part].channelnames;
+    const std::vector<std::string>& names = channels(part);
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end()) return std::nullopt;
     return ChannelId{part, static_cast<int>(found - names.begin())};
@@ -122,61 +218,57 @@ std::optional<ChannelId> ExrInput::Find(absl::string_view name, int preferred_pa
   return std::nullopt;
 }
 
+double ExrInput::pixel_aspect(int part) const {
+  return source_->file->header(part).pixelAspectRatio();
+}
+
 std::optional<Eigen::Matrix4d> ExrInput::MatrixAttribute(int part, const std::string& name) const {
-  // Case-sensitive: OpenImageIO calls V-Ray's cameraTransform, a camera-to-world matrix,
-  // "worldtocamera".
-  const OIIO::ParamValue* attribute =
-      parts_[part].find_attribute(name, OIIO::TypeDesc::UNKNOWN, /*casesensitive=*/true);
-  if (attribute == nullptr) return std::nullopt;
-  const float* single = static_cast<const float*>(attribute->data());
-  const double* wide = static_cast<const double*>(attribute->data());
-  Eigen::Matrix4d matrix;
-  for (int i = 0; i < 16; ++i) {
-    if (attribute->type() == OIIO::TypeDesc::TypeMatrix44) {
-      matrix(i / 4, i % 4) = single[i];
-    } else if (attribute->type() ==
-               OIIO::TypeDesc(OIIO::TypeDesc::DOUBLE, OIIO::TypeDesc::MATRIX44)) {
-      matrix(i / 4, i % 4) = wide[i];
-    } else {
-      return std::nullopt;
-    }
+  const Imf::Header& header = source_->file->header(part);
+  Imath::M44d stored;
+  if (const auto* wide = header.findTypedAttribute<Imf::M44dAttribute>(name)) {
+    stored = wide->value();
+  } else if (const auto* single = header.findTypedAttribute<Imf::M44fAttribute>(name)) {
+    stored = Imath::M44d(single->value());
+  } else {
+    return std::nullopt;
   }
+  Eigen::Matrix4d matrix;
+  for (int i = 0; i < 16; ++i) matrix(i / 4, i % 4) = stored[i / 4][i % 4];
   return matrix;
 }
 
+std::vector<std::string> ExrInput::MatrixNames(int part) const {
+  std::vector<std::string> names;
+  const Imf::Header& header = source_->file->header(part);
+  for (auto attribute = header.begin(); attribute != header.end(); ++attribute) {
+    if (MatrixAttribute(part, attribute.name())) names.emplace_back(attribute.name());
+  }
+  return names;
+}
+
 template <typename T>
-absl::StatusOr<std::vector<T>> ExrInput::Read(ChannelId id, OIIO::TypeDesc type, T outside) {
-  const OIIO::ImageSpec& spec = parts_[id.part];
+absl::StatusOr<std::vector<T>> ExrInput::Read(ChannelId id, T outside) {
   try {
-    std::vector<T> data(static_cast<size_t>(spec.width) * spec.height);
-    if (!input_->read_image(id.part, 0, id.channel, id.channel + 1, type, data.data())) {
-      return absl::DataLossError(absl::StrFormat("%s: channel %s cannot be read: %s",
-                                                 path_,
-                                                 quoted_name(id),
-                                                 Utf8Text(input_->geterror())));
+    Imf::MultiPartInputFile& file = *source_->file;
+    const Imf::Header& header = file.header(id.part);
+    const Imf::Channel& channel = header.channels()[name(id)];
+    if (channel.xSampling != 1 || channel.ySampling != 1) {
+      return absl::InvalidArgumentError(absl::StrFormat(
+          "%s: channel %s has one value for %dx%d pixels, want one for each: render or convert it "
+          "without subsampling",
+          path_,
+          quoted_name(id),
+          channel.xSampling,
+          channel.ySampling));
     }
-    if (spec.x == spec.full_x && spec.y == spec.full_y && spec.width == spec.full_width &&
-        spec.height == spec.full_height) {
-      return data;
-    }
-    // Copy the rectangle that both windows share.
-    std::vector<T> display(static_cast<size_t>(spec.full_width) * spec.full_height, outside);
-    const int64_t x_begin = std::max<int64_t>(spec.x, spec.full_x);
-    const int64_t y_begin = std::max<int64_t>(spec.y, spec.full_y);
-    const int64_t x_end =
-        std::min(int64_t{spec.x} + spec.width, int64_t{spec.full_x} + spec.full_width);
-    const int64_t y_end =
-        std::min(int64_t{spec.y} + spec.height, int64_t{spec.full_y} + spec.full_height);
-    for (int64_t y = y_begin; y < y_end && x_begin < x_end; ++y) {
-      const auto row = data.begin() + (y - spec.y) * spec.width;
-      std::copy(row + (x_begin - spec.x),
-                row + (x_end - spec.x),
-                display.begin() + (y - spec.full_y) * spec.full_width + (x_begin - spec.full_x));
-    }
-    return display;
+    const Window& data_window = header.dataWindow();
+    const Window& display_window = header.displayWindow();
+    std::vector<T> data = ReadData<T>(file, id.part, name(id));
+    if (data_window == display_window) return data;
+    return OnDisplay(data, data_window, display_window, outside);
   } catch (const std::exception& e) {
     return absl::DataLossError(absl::StrFormat(
-        "%s: channel %s cannot be read: %s", path_, quoted_name(id), Utf8Text(e.what())));
+        "%s: channel %s cannot be read: %s", path_, quoted_name(id), WordsOf(e, path_)));
   }
 }
 
@@ -185,7 +277,7 @@ absl::StatusOr<std::vector<float>> ExrInput::ReadFloat(ChannelId id, float outsi
     return absl::InvalidArgumentError(
         absl::StrFormat("%s: channel %s is UINT, want half or float", path_, quoted_name(id)));
   }
-  return Read<float>(id, OIIO::TypeDesc::FLOAT, outside);
+  return Read<float>(id, outside);
 }
 
 absl::StatusOr<std::vector<uint32_t>> ExrInput::ReadUint(ChannelId id) {
@@ -195,7 +287,7 @@ absl::StatusOr<std::vector<uint32_t>> ExrInput::ReadUint(ChannelId id) {
         path_,
         quoted_name(id)));
   }
-  return Read<uint32_t>(id, OIIO::TypeDesc::UINT32, 0);
+  return Read<uint32_t>(id, 0);
 }
 
 std::string QuotedList(const std::vector<std::string>& names) {

@@ -2,11 +2,9 @@
 //
 // One OpenEXR file open for reading: its parts, and single channels laid out on the display window.
 // In:   a path.
-// Out:  headers (OpenImageIO's ImageSpec) and channels of display-window size.
-// Role: the one place that includes OpenImageIO; internal to io/.
+// Out:  what a read-back needs of the headers, and channels of display-window size.
+// Role: the one place that reads through OpenEXR; internal to io/.
 #pragma once
-
-#include <OpenImageIO/imageio.h>
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -33,39 +31,56 @@ class ExrInput {
   // more than max_pixels; no pixel has been read or allocated by then.
   static absl::StatusOr<ExrInput> Open(const std::string& path, int64_t max_pixels);
 
+  ~ExrInput();
+  ExrInput(ExrInput&& other) noexcept;
+  ExrInput& operator=(ExrInput&& other) noexcept;
+
   const std::string& path() const { return path_; }
   int num_parts() const { return static_cast<int>(parts_.size()); }
-  const OIIO::ImageSpec& part(int i) const { return parts_[i]; }
 
   // Size of the display window of a part, pixels.
-  int width(int part) const { return parts_[part].full_width; }
-  int height(int part) const { return parts_[part].full_height; }
+  int width(int part) const;
+  int height(int part) const;
 
-  const std::string& name(ChannelId id) const { return parts_[id.part].channelnames[id.channel]; }
+  // Names in file order, which is that of the alphabet.
+  const std::vector<std::string>& channels(int part) const { return parts_[part].channels; }
+  const std::string& name(ChannelId id) const { return channels(id.part)[id.channel]; }
   std::string quoted_name(ChannelId id) const;  // for messages
-  bool is_uint(ChannelId id) const;
+  bool is_uint(ChannelId id) const { return parts_[id.part].is_uint[id.channel]; }
 
   // The channel of that name in the given part, else in the first part that has it.
   std::optional<ChannelId> Find(absl::string_view name, int preferred_part) const;
 
+  // Width over height of a pixel, 1 where the part does not say.
+  double pixel_aspect(int part) const;
+
   // The matrix attribute of that name, (r, c) the number 4 r + c as stored.
   std::optional<Eigen::Matrix4d> MatrixAttribute(int part, const std::string& name) const;
 
+  // Names of the attributes that are 4 x 4 matrices.
+  std::vector<std::string> MatrixNames(int part) const;
+
   // One channel, row-major over the display window, `outside` where the data window does not reach.
-  // Half and float channels are read as float, UINT channels as uint32_t, never across.
+  // Half and float channels are read as float, UINT channels as uint32_t, never across; subsampled
+  // channels are not read at all.
   absl::StatusOr<std::vector<float>> ReadFloat(ChannelId id, float outside);
   absl::StatusOr<std::vector<uint32_t>> ReadUint(ChannelId id);
 
  private:
-  ExrInput(std::string path, std::unique_ptr<OIIO::ImageInput> input)
-      : path_(std::move(path)), input_(std::move(input)) {}
+  struct Source;  // OpenEXR's own
+  struct Part {
+    std::vector<std::string> channels;
+    std::vector<bool> is_uint;
+  };
+
+  explicit ExrInput(std::string path);
 
   template <typename T>
-  absl::StatusOr<std::vector<T>> Read(ChannelId id, OIIO::TypeDesc type, T outside);
+  absl::StatusOr<std::vector<T>> Read(ChannelId id, T outside);
 
   std::string path_;
-  std::unique_ptr<OIIO::ImageInput> input_;
-  std::vector<OIIO::ImageSpec> parts_;
+  std::unique_ptr<Source> source_;
+  std::vector<Part> parts_;
 };
 
 // UTF-8, as "\"Z\", \"shadow.key\", \"shadow.sun\"", cut short after a few dozen.

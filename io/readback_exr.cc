@@ -40,8 +40,7 @@ float BackgroundDepth(DepthKind kind) {
 std::vector<std::string> AllChannels(const ExrInput& exr) {
   std::vector<std::string> names;
   for (int part = 0; part < exr.num_parts(); ++part) {
-    names.insert(
-        names.end(), exr.part(part).channelnames.begin(), exr.part(part).channelnames.end());
+    names.insert(names.end(), exr.channels(part).begin(), exr.channels(part).end());
   }
   return names;
 }
@@ -88,8 +87,8 @@ absl::StatusOr<ChannelId> FindDepth(const ExrInput& exr, const std::string& want
   for (int part = 0; part < exr.num_parts(); ++part) {
     std::vector<ChannelId> candidates;
     std::vector<std::string> names;
-    for (int channel = 0; channel < exr.part(part).nchannels; ++channel) {
-      const ChannelId id{part, channel};
+    for (size_t channel = 0; channel < exr.channels(part).size(); ++channel) {
+      const ChannelId id{part, static_cast<int>(channel)};
       if (exr.name(id) == "Z") return id;
       if (absl::EndsWith(exr.name(id), ".Z")) {
         candidates.push_back(id);

@@ -1,24 +1,31 @@
 #include "io/readback_exr_write.h"
 
-#include <OpenImageIO/imageio.h>
+#include <Imath/half.h>
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfMatrixAttribute.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStdIO.h>
 
 #include <Eigen/Core>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
-#include <memory>
+#include <exception>
 #include <set>
+#include <string>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "base/text_file.h"
 #include "io/camera_exr_input.h"
+#include "io/exr_threads.h"
+#include "wire/utf8.h"
 
 namespace lightfit {
 
 namespace {
-
-constexpr uint16_t kHalfOne = 0x3C00;  // 1 in half precision
 
 // OpenEXR's limit of 255, less "shadow.".
 constexpr size_t kMaxNameBytes = 248;
@@ -84,52 +91,60 @@ absl::Status Validate(const Readback& readback, absl::Span<const Light> lights) 
 }
 
 // Row vectors, in single and in double precision.
-void AddMatrix(const std::string& name, const Eigen::Matrix4d& matrix, OIIO::ImageSpec* spec) {
-  // The columns one after the other are the rows of the transpose.
-  const Eigen::Matrix4f single = matrix.cast<float>();
-  spec->attribute(name, OIIO::TypeDesc::TypeMatrix44, single.data());
-  spec->attribute(internal::ExactName(name),
-                  OIIO::TypeDesc(OIIO::TypeDesc::DOUBLE, OIIO::TypeDesc::MATRIX44),
-                  matrix.data());
+void AddMatrix(const std::string& name, const Eigen::Matrix4d& matrix, Imf::Header* header) {
+  Imath::M44d rows;
+  for (int i = 0; i < 16; ++i) rows[i / 4][i % 4] = matrix(i % 4, i / 4);
+  header->insert(name, Imf::M44fAttribute(Imath::M44f(rows)));
+  header->insert(internal::ExactName(name), Imf::M44dAttribute(rows));
 }
 
-OIIO::ImageSpec SpecOf(const Readback& readback, absl::Span<const Light> lights) {
-  OIIO::ImageSpec spec(readback.width(),
-                       readback.height(),
-                       1 + static_cast<int>(lights.size()),
-                       OIIO::TypeDesc::FLOAT);
-  spec.channelnames = {"Z"};
-  spec.channelformats = {OIIO::TypeDesc::FLOAT};
-  for (const Light& light : lights) {
-    spec.channelnames.push_back(absl::StrCat("shadow.", light.name));
-    spec.channelformats.emplace_back(OIIO::TypeDesc::HALF);
-  }
+std::string ShadowChannel(const Light& light) { return absl::StrCat("shadow.", light.name); }
+
+Imf::Header HeaderOf(const Readback& readback, absl::Span<const Light> lights) {
   const StandardMatrices matrices = StandardMatricesOf(readback.camera);
-  AddMatrix("worldToCamera", matrices.camera_from_world, &spec);
-  AddMatrix("worldToNDC", matrices.ndc_from_world, &spec);
-  spec.attribute("PixelAspectRatio", static_cast<float>(matrices.pixel_aspect));
-  spec.attribute("compression", "zip");
-  // Without one OpenImageIO writes the present time, and no two files would be the same.
-  spec.attribute("DateTime", "");
-  return spec;
+  Imf::Header header(
+      readback.width(), readback.height(), static_cast<float>(matrices.pixel_aspect));
+  header.compression() = Imf::ZIP_COMPRESSION;
+  header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
+  for (const Light& light : lights) {
+    header.channels().insert(ShadowChannel(light), Imf::Channel(Imf::HALF));
+  }
+  AddMatrix("worldToCamera", matrices.camera_from_world, &header);
+  AddMatrix("worldToNDC", matrices.ndc_from_world, &header);
+  return header;
 }
 
-// Native pixels, as the channels say: 4 bytes of depth, 2 of each shadow.
-std::vector<char> PixelsOf(const Readback& readback, absl::Span<const Light> lights) {
-  std::vector<char> bytes(readback.depth.size() *
-                          (sizeof(float) + lights.size() * sizeof(uint16_t)));
-  char* out = bytes.data();
-  for (size_t i = 0; i < readback.depth.size(); ++i) {
-    std::memcpy(out, &readback.depth[i], sizeof(float));
-    out += sizeof(float);
-    for (const Light& light : lights) {
-      const bool is_shadowed = (readback.shadow_bits[i] >> light.shadow_bit & 1U) != 0;
-      const uint16_t value = is_shadowed ? kHalfOne : 0;
-      std::memcpy(out, &value, sizeof(value));
-      out += sizeof(value);
-    }
+std::vector<half> ShadowOf(const Readback& readback, const Light& light) {
+  std::vector<half> shadow;
+  shadow.reserve(readback.shadow_bits.size());
+  for (const uint32_t bits : readback.shadow_bits) {
+    shadow.emplace_back((bits >> light.shadow_bit & 1U) != 0 ? 1.0F : 0.0F);
   }
-  return bytes;
+  return shadow;
+}
+
+// The whole file: to memory first, as OpenEXR ends a file in a destructor, where a full disk would
+// go unnoticed.
+std::string BytesOf(const Readback& readback, absl::Span<const Light> lights) {
+  const Imf::Header header = HeaderOf(readback, lights);
+  const auto slice = [&header](Imf::PixelType type, const void* pixels) {
+    return Imf::Slice::Make(type, pixels, header.dataWindow());
+  };
+  std::vector<std::vector<half>> shadows;
+  Imf::FrameBuffer pixels;
+  pixels.insert("Z", slice(Imf::FLOAT, readback.depth.data()));
+  for (const Light& light : lights) {
+    shadows.push_back(ShadowOf(readback, light));
+    pixels.insert(ShadowChannel(light), slice(Imf::HALF, shadows.back().data()));
+  }
+  internal::StartExrThreads();
+  Imf::StdOSStream bytes;
+  {
+    Imf::OutputFile file(bytes, header);
+    file.setFrameBuffer(pixels);
+    file.writePixels(readback.height());
+  }
+  return bytes.str();
 }
 
 }  // namespace
@@ -138,18 +153,12 @@ absl::Status WriteReadbackExr(const std::string& path,
                               const Readback& readback,
                               absl::Span<const Light> lights) {
   if (absl::Status status = Validate(readback, lights); !status.ok()) return status;
-  const auto failed = [&path](const std::string& why) {
-    return absl::UnknownError(absl::StrCat(path, ": cannot be written: ", why));
-  };
-  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("openexr");
-  if (output == nullptr) return failed(OIIO::geterror());
-  const OIIO::ImageSpec spec = SpecOf(readback, lights);
-  const std::vector<char> pixels = PixelsOf(readback, lights);
-  if (!output->open(path, spec) || !output->write_image(OIIO::TypeDesc::UNKNOWN, pixels.data()) ||
-      !output->close()) {
-    return failed(output->geterror());
+  try {
+    return WriteTextFileAtomically(path, BytesOf(readback, lights));
+  } catch (const std::exception& e) {
+    return absl::UnknownError(
+        absl::StrCat(path, ": cannot be written as OpenEXR: ", Utf8Text(e.what())));
   }
-  return absl::OkStatus();
 }
 
 }  // namespace lightfit

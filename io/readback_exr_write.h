@@ -18,8 +18,8 @@
 
 namespace lightfit {
 
-// Replaces what is at `path`. InvalidArgument for a read-back or lights that cannot be used, and
-// for a camera with skewed pixels, which the attributes cannot express.
+// Replaces what is at `path` in one step. InvalidArgument for a read-back or lights that cannot be
+// used, and for a camera with skewed pixels, which the attributes cannot express.
 absl::Status WriteReadbackExr(const std::string& path,
                               const Readback& readback,
                               absl::Span<const Light> lights);

@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_format.h"
 #include "io/camera_file.h"
+#include "tests/io/exr_file.h"
 #include "tests/io/testing.h"
 
 namespace lightfit {
@@ -308,7 +309,7 @@ TEST(CameraExr, AcceptsSinglePrecisionFarFromTheOrigin) {
 TEST(CameraExr, MissingAttributesNameWhatIsThere) {
   const testing::TemporaryFolder folder;
   testing::ExrPart part;
-  part.channels = {{"Z", OIIO::TypeDesc::FLOAT, [](int, int) { return 3.0; }}};
+  part.channels = {{"Z", Imf::FLOAT, [](int, int) { return 3.0; }}};
   part.matrices = {{"cameraTransform", Eigen::Matrix4d::Identity()}};
   testing::WriteExr(folder.File("vray.exr"), {part});
   const auto camera = ReadCameraExr(folder.File("vray.exr"));
@@ -321,7 +322,7 @@ TEST(CameraExr, PixelAspectComesFromTheFile) {
   const testing::TemporaryFolder folder;
   testing::ExrPart part;
   const StandardMatrices matrices = testing::Standard(2 * part.width, part.height);
-  part.channels = {{"Z", OIIO::TypeDesc::FLOAT, [](int, int) { return 3.0; }}};
+  part.channels = {{"Z", Imf::FLOAT, [](int, int) { return 3.0; }}};
   part.matrices = {{"worldToCamera", matrices.world_to_camera},
                    {"worldToNDC", matrices.world_to_ndc}};
   part.pixel_aspect = 2.0F;

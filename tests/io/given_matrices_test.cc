@@ -7,6 +7,7 @@
 
 #include <Eigen/LU>
 
+#include "geometry/clip.h"
 #include "tests/testing/matchers.h"
 #include "geometry/clip.h"
 

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <iostream>
 #include <limits>
 
 #include "io/readback_exr.h"
+#include "tests/io/exr_file.h"
 #include "tests/io/testing.h"
 
 namespace lightfit {
@@ -29,11 +31,11 @@ std::string SmallExrBytes(const testing::TemporaryFolder& folder, bool multi_par
   const testing::StandardMatrices matrices = testing::Standard(part.width, part.height);
   part.matrices = {{"worldToCamera", matrices.world_to_camera},
                    {"worldToNDC", matrices.world_to_ndc}};
-  part.channels = {{"Z", OIIO::TypeDesc::FLOAT, [](int x, int y) { return 1.0 + x * y; }},
-                   {"shadow.sun", OIIO::TypeDesc::HALF, [](int x, int) { return x % 2; }}};
+  part.channels = {{"Z", Imf::FLOAT, [](int x, int y) { return 1.0 + x * y; }},
+                   {"shadow.sun", Imf::HALF, [](int x, int) { return x % 2; }}};
   testing::ExrPart second = part;
   second.name = "second";
-  second.channels = {{"shadow.key", OIIO::TypeDesc::UINT32, [](int x, int) { return x % 2; }}};
+  second.channels = {{"shadow.key", Imf::UINT, [](int x, int) { return x % 2; }}};
   std::vector<testing::ExrPart> parts = {part};
   if (multi_part) parts.push_back(second);
   testing::WriteExr(folder.File("small.exr"), parts);
@@ -197,7 +199,6 @@ TEST(MalformedExr, AttributesLongerThanTheFileAreRefusedBeforeMemoryIsTaken) {
   EXPECT_LT(PeakMemoryKilobytes() - before, 200 * 1024);
 }
 
-// OpenImageIO would end the program.
 TEST(MalformedExr, ChannelsOfUnknownKindAreRefused) {
   const testing::TemporaryFolder folder;
   const std::string whole = SmallExrBytes(folder, true);
@@ -206,8 +207,46 @@ TEST(MalformedExr, ChannelsOfUnknownKindAreRefused) {
     bytes[bytes.find(key) + key.size() + 1] = '\3';
     const auto file = ReadReadbackExr(folder.Write("kind.exr", bytes), kLights);
     EXPECT_EQ(file.status().code(), absl::StatusCode::kInvalidArgument);
-    EXPECT_TRUE(HasAll(file.status().message(), {"kind.exr", "channels", "damaged"}));
+    EXPECT_TRUE(HasAll(file.status().message(), {"kind.exr", key, "invalid"}));
   }
+}
+
+std::string Int32Bytes(int32_t number) {
+  return {reinterpret_cast<const char*>(&number), sizeof(number)};
+}
+
+// OpenEXR takes half a kilobyte for a name of a few bytes.
+TEST(MalformedExr, CountlessNamesAreRefusedBeforeMemoryIsTaken) {
+  const testing::TemporaryFolder folder;
+  constexpr int kNumNames = 1 << 20;
+  std::string attributes, channels;
+  for (int i = 0; i < kNumNames; ++i) {
+    const std::string name = std::to_string(i) + '\0';
+    attributes += name + "int" + '\0' + Int32Bytes(4) + Int32Bytes(i);
+    channels += name + Int32Bytes(2) + Int32Bytes(0) + Int32Bytes(1) + Int32Bytes(1);
+  }
+  channels += '\0';
+  const std::string list =
+      std::string("channels") + '\0' + "chlist" + '\0' + Int32Bytes(channels.size()) + channels;
+  const int64_t before = PeakMemoryKilobytes();
+  for (const std::string& names : {attributes, list}) {
+    const std::string bytes = "\x76\x2f\x31\x01" + Int32Bytes(2) + names + '\0';
+    const auto file = ReadReadbackExr(folder.Write("names.exr", bytes), kLights);
+    EXPECT_EQ(file.status().code(), absl::StatusCode::kInvalidArgument);
+    EXPECT_TRUE(HasAll(file.status().message(), {"names.exr", "65536 attributes and channels"}));
+  }
+  EXPECT_LT(PeakMemoryKilobytes() - before, 200 * 1024);
+}
+
+TEST(MalformedExr, CountlessPartsAreRefused) {
+  const testing::TemporaryFolder folder;
+  std::string bytes = "\x76\x2f\x31\x01" + Int32Bytes(0x1002);
+  for (int i = 0; i < 1025; ++i) {
+    bytes += std::string("a") + '\0' + "int" + '\0' + Int32Bytes(4) + Int32Bytes(i) + '\0';
+  }
+  const auto file = ReadReadbackExr(folder.Write("parts.exr", bytes + '\0'), kLights);
+  EXPECT_EQ(file.status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_TRUE(HasAll(file.status().message(), {"parts.exr", "1024 parts"}));
 }
 
 // What is not UTF-8 could not be written into a result.

@@ -7,6 +7,7 @@
 
 #include "geometry/affine_depth.h"
 #include "io/lights_file.h"
+#include "tests/io/exr_file.h"
 #include "tests/io/testing.h"
 
 namespace lightfit {
@@ -30,9 +31,9 @@ ExrPart StandardPart() {
   const testing::StandardMatrices matrices = testing::Standard(part.width, part.height);
   part.matrices = {{"worldToCamera", matrices.world_to_camera},
                    {"worldToNDC", matrices.world_to_ndc}};
-  part.channels = {{"Z", OIIO::TypeDesc::FLOAT, DepthValue},
-                   {"shadow.key", OIIO::TypeDesc::HALF, KeyShadow},
-                   {"shadow.sun", OIIO::TypeDesc::HALF, SunShadow}};
+  part.channels = {{"Z", Imf::FLOAT, DepthValue},
+                   {"shadow.key", Imf::HALF, KeyShadow},
+                   {"shadow.sun", Imf::HALF, SunShadow}};
   return part;
 }
 
@@ -120,9 +121,9 @@ TEST(ReadReadbackExr, AMissingShadowChannelFailsThatLightOnly) {
 TEST(ReadReadbackExr, ShadowChannelsFollowTheFormatOrTheirOwnName) {
   const TemporaryFolder folder;
   ExrPart part = StandardPart();
-  part.channels = {{"Z", OIIO::TypeDesc::FLOAT, DepthValue},
-                   {"key_visibility.S", OIIO::TypeDesc::FLOAT, KeyShadow},
-                   {"sol", OIIO::TypeDesc::FLOAT, SunShadow}};
+  part.channels = {{"Z", Imf::FLOAT, DepthValue},
+                   {"key_visibility.S", Imf::FLOAT, KeyShadow},
+                   {"sol", Imf::FLOAT, SunShadow}};
   testing::WriteExr(folder.File("a.exr"), {part});
   ReadbackExrOptions options;
   options.shadow_channel_format = "{light}_visibility.S";
@@ -151,7 +152,7 @@ TEST(ReadReadbackExr, HalfAndFullShadowsAboveHalfCount) {
   // 0.5 itself is lit; NaN is lit; infinity is shadowed; whole numbers count from 1.
   const double values[] = {0.0, 0.5, 0.501, 1.0, std::nan(""), INFINITY, -1.0, 7.0};
   part.channels[2].value = [&values](int x, int) { return values[x]; };
-  part.channels.push_back({"shadow.uint", OIIO::TypeDesc::UINT32, [](int x, int) { return x; }});
+  part.channels.push_back({"shadow.uint", Imf::UINT, [](int x, int) { return x; }});
   testing::WriteExr(folder.File("a.exr"), {part});
   const std::vector<Light> lights = {Light::Point("sun", Eigen::Vector3d::UnitX(), 0),
                                      Light::Point("uint", Eigen::Vector3d::UnitX(), 1)};
@@ -165,9 +166,9 @@ TEST(ReadReadbackExr, ReadsABitMaskExactly) {
   const TemporaryFolder folder;
   ExrPart part = StandardPart();
   const uint32_t masks[] = {0, 1, 0xFFFFFFFFU, 0x80000001U, 16777217U, 0x7FFFFFFFU, 3, 0xDEADBEEFU};
-  part.channels = {{"Z", OIIO::TypeDesc::FLOAT, DepthValue},
-                   {"beauty.R", OIIO::TypeDesc::HALF, KeyShadow},
-                   {"shadowBits", OIIO::TypeDesc::UINT32, [&](int x, int) { return masks[x]; }}};
+  part.channels = {{"Z", Imf::FLOAT, DepthValue},
+                   {"beauty.R", Imf::HALF, KeyShadow},
+                   {"shadowBits", Imf::UINT, [&](int x, int) { return masks[x]; }}};
   testing::WriteExr(folder.File("a.exr"), {part});
   ReadbackExrOptions options;
   options.shadow_bits_channel = "shadowBits";
@@ -268,7 +269,7 @@ TEST(ReadReadbackExr, FindsBlenderDepthAndRefusesToChooseAmongSeveral) {
   testing::WriteExr(folder.File("a.exr"), {part});
   EXPECT_TRUE(ReadReadbackExr(folder.File("a.exr"), kLights).ok());
 
-  part.channels.push_back({"Other.Normal.Z", OIIO::TypeDesc::FLOAT, SunShadow});
+  part.channels.push_back({"Other.Normal.Z", Imf::FLOAT, SunShadow});
   testing::WriteExr(folder.File("a.exr"), {part});
   const auto refused = ReadReadbackExr(folder.File("a.exr"), kLights);
   ASSERT_EQ(refused.status().code(), absl::StatusCode::kInvalidArgument);
@@ -298,7 +299,7 @@ TEST(ReadReadbackExr, SaysWhichChannelsThereAreWhenNoneIsDepth) {
 TEST(ReadReadbackExr, RefusesWholeNumbersAsDepth) {
   const TemporaryFolder folder;
   ExrPart part = StandardPart();
-  part.channels[0].type = OIIO::TypeDesc::UINT32;
+  part.channels[0].type = Imf::UINT;
   testing::WriteExr(folder.File("a.exr"), {part});
   const auto file = ReadReadbackExr(folder.File("a.exr"), kLights);
   EXPECT_TRUE(HasAll(file.status().message(), {"\"Z\"", "UINT", "want half or float"}));
@@ -308,13 +309,11 @@ TEST(ReadReadbackExr, MultiPartFilesUseTheFirstPartWithDepth) {
   const TemporaryFolder folder;
   ExrPart beauty = StandardPart();
   beauty.name = "beauty";
-  beauty.channels = {{"R", OIIO::TypeDesc::HALF, SunShadow},
-                     {"shadow.key", OIIO::TypeDesc::HALF, KeyShadow}};
+  beauty.channels = {{"R", Imf::HALF, SunShadow}, {"shadow.key", Imf::HALF, KeyShadow}};
   ExrPart depth = StandardPart();
   depth.name = "depth";
   depth.matrices.clear();  // only the first part has the camera
-  depth.channels = {{"Z", OIIO::TypeDesc::FLOAT, DepthValue},
-                    {"shadow.sun", OIIO::TypeDesc::HALF, SunShadow}};
+  depth.channels = {{"Z", Imf::FLOAT, DepthValue}, {"shadow.sun", Imf::HALF, SunShadow}};
   testing::WriteExr(folder.File("a.exr"), {beauty, depth});
   const auto file = ReadReadbackExr(folder.File("a.exr"), kLights);
   ASSERT_TRUE(file.ok()) << file.status();

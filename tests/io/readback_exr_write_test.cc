@@ -1,9 +1,13 @@
 #include "io/readback_exr_write.h"
 
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfStandardAttributes.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <cmath>
+#include <csignal>
 #include <random>
 
 #include "io/readback_exr.h"
@@ -120,9 +124,45 @@ TEST(WriteReadbackExr, IsTheSameFileEveryTime) {
   }
   EXPECT_TRUE(testing::Bytes(folder.File("a.exr")) == testing::Bytes(folder.File("b.exr")));
   // Nor does the time go in.
-  const auto input = OIIO::ImageInput::open(folder.File("a.exr"));
-  ASSERT_NE(input, nullptr);
-  EXPECT_EQ(input->spec().get_string_attribute("DateTime"), "");
+  EXPECT_FALSE(Imf::hasCapDate(Imf::InputFile(folder.File("a.exr").c_str()).header()));
+}
+
+// Files of this process may not grow beyond `num_bytes`, as if the disk were full.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t num_bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit = {num_bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FullDisk() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+
+ private:
+  void (*handler_)(int);
+  rlimit before_ = {};
+};
+
+TEST(WriteReadbackExr, AFullDiskIsAnErrorAndLeavesTheOldFile) {
+  const Case written(FarCamera());
+  const TemporaryFolder folder;
+  const std::string path = folder.File("a.exr");
+  ASSERT_EQ(WriteReadbackExr(path, written.View(), written.lights), absl::OkStatus());
+  const std::string whole = testing::Bytes(path);
+  for (const size_t num_bytes : {size_t{0}, size_t{100}, whole.size() / 2, whole.size() - 1}) {
+    absl::Status status;
+    {
+      const FullDisk full(num_bytes);
+      status = WriteReadbackExr(path, written.View(), written.lights);
+    }
+    EXPECT_THAT(status.message(), HasSubstr("a.exr: cannot be written")) << num_bytes;
+    EXPECT_TRUE(testing::Bytes(path) == whole) << num_bytes;
+    EXPECT_EQ(folder.num_files(), 1u) << num_bytes;
+  }
 }
 
 TEST(WriteReadbackExr, RefusesWhatTheFileCannotHold) {

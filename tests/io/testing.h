@@ -1,22 +1,17 @@
 // tests/io/testing.h
 //
-// EXR files and cameras for the tests of io/: written through OpenImageIO, as a renderer would.
+// Files and cameras for the tests of io/ and of what uses it.
 #pragma once
 
-#include <OpenImageIO/half.h>
-#include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <random>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "absl/strings/match.h"
@@ -72,89 +67,6 @@ inline std::string RepositoryFile(const std::string& name) { return RepositoryPa
 inline std::string Bytes(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-// A channel of an EXR part: name, type, and its value at a pixel of the data window.
-struct Channel {
-  std::string name;
-  OIIO::TypeDesc type = OIIO::TypeDesc::FLOAT;
-  std::function<double(int x, int y)> value;
-};
-
-struct ExrPart {
-  int width = 8, height = 6;                                    // display window
-  int data_x = 0, data_y = 0, data_width = 8, data_height = 6;  // data window
-  std::vector<Channel> channels;
-  std::vector<std::pair<std::string, Eigen::Matrix4d>> matrices;  // rows as stored
-  float pixel_aspect = 1.0F;
-  std::string name = "part";
-};
-
-// Native pixels, one after the other, channels of mixed types interleaved.
-inline std::vector<char> NativePixels(const ExrPart& part, const OIIO::ImageSpec& spec) {
-  std::vector<char> bytes(spec.image_bytes(/*native=*/true));
-  char* out = bytes.data();
-  const auto put = [&out](const auto& value) {
-    std::memcpy(out, &value, sizeof(value));
-    out += sizeof(value);
-  };
-  for (int y = part.data_y; y < part.data_y + part.data_height; ++y) {
-    for (int x = part.data_x; x < part.data_x + part.data_width; ++x) {
-      for (const Channel& channel : part.channels) {
-        const double value = channel.value(x, y);
-        if (channel.type == OIIO::TypeDesc::UINT32) {
-          put(static_cast<uint32_t>(value));
-        } else if (channel.type == OIIO::TypeDesc::HALF) {
-          put(half(static_cast<float>(value)));
-        } else {
-          put(static_cast<float>(value));
-        }
-      }
-    }
-  }
-  return bytes;
-}
-
-// Writes the parts; a file with several is a multi-part file.
-inline void WriteExr(const std::string& path, const std::vector<ExrPart>& parts) {
-  std::vector<OIIO::ImageSpec> specs;
-  for (const ExrPart& part : parts) {
-    OIIO::ImageSpec spec(part.data_width,
-                         part.data_height,
-                         static_cast<int>(part.channels.size()),
-                         OIIO::TypeDesc::FLOAT);
-    spec.x = part.data_x;
-    spec.y = part.data_y;
-    spec.full_width = part.width;
-    spec.full_height = part.height;
-    spec.channelnames.clear();
-    for (const Channel& channel : part.channels) {
-      spec.channelnames.push_back(channel.name);
-      spec.channelformats.push_back(channel.type);
-    }
-    for (const auto& [name, matrix] : part.matrices) {
-      float rows[16];
-      for (int i = 0; i < 16; ++i) rows[i] = static_cast<float>(matrix(i / 4, i % 4));
-      spec.attribute(name, OIIO::TypeDesc::TypeMatrix44, rows);
-    }
-    spec.attribute("PixelAspectRatio", part.pixel_aspect);
-    spec.attribute("compression", "zip");
-    if (parts.size() > 1) spec.attribute("oiio:subimagename", part.name);
-    specs.push_back(spec);
-  }
-  auto output = OIIO::ImageOutput::create("openexr");
-  ASSERT_NE(output, nullptr) << OIIO::geterror();
-  const int count = static_cast<int>(specs.size());
-  ASSERT_TRUE(count == 1 ? output->open(path, specs[0]) : output->open(path, count, specs.data()))
-      << output->geterror();
-  for (int i = 0; i < count; ++i) {
-    if (i > 0) {
-      ASSERT_TRUE(output->open(path, specs[i], OIIO::ImageOutput::AppendSubimage));
-    }
-    const std::vector<char> pixels = NativePixels(parts[i], specs[i]);
-    ASSERT_TRUE(output->write_image(OIIO::TypeDesc::UNKNOWN, pixels.data())) << output->geterror();
-  }
-  ASSERT_TRUE(output->close()) << output->geterror();
 }
 
 // A standard perspective camera for a frame of that size: worldToCamera and worldToNDC as the
