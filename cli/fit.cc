@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -14,7 +15,6 @@
 #include "cli/flags/fit_inputs.h"
 #include "cli/reports/fit_report.h"
 #include "jobs/fit_comparison.h"
-#include "optimizer/fit.h"
 #include "picture/fit_page.h"
 #include "picture/png.h"
 #include "picture/text.h"
@@ -100,8 +100,6 @@ struct Outcome {
 };
 
 Outcome FitAndDraw(const FitFlags& flags, const FitOptions& options, const FitInputs& inputs) {
-  const absl::StatusOr<Surfaces> surfaces =
-      FindSurfaces(inputs.file.View(), LightMask(inputs.lights), options.samples);
   const bool draws = !flags.picture_path.empty();
   Typeface typeface;
   if (draws) {
@@ -112,24 +110,28 @@ Outcome FitAndDraw(const FitFlags& flags, const FitOptions& options, const FitIn
           "LIGHTFIT_FONT to a .ttf file");
     }
   }
-  Outcome outcome;
   Progress progress(static_cast<int>(inputs.lights.size()) + (draws ? 1 : 0), flags.quiet);
-  for (size_t i = 0; i < inputs.lights.size(); ++i) {
-    const Light& light = inputs.lights[i];
-    absl::Status light_status = inputs.file.light_status[i];
-    if (light_status.ok()) light_status = surfaces.status();
-    progress.Begin(absl::StrCat("fitting ", light.name));
-    outcome.comparisons.push_back(light_status.ok() ? Compare(*surfaces, light, flags.map, options)
-                                                    : FailedComparison(light, light_status));
-    progress.Advance();
-  }
+  bool is_first = true;
+  ComparedReadback compared = CompareLights(inputs.file.View(),
+                                            inputs.lights,
+                                            inputs.file.light_status,
+                                            flags.map,
+                                            options,
+                                            [&](const Light& light) {
+                                              if (!is_first) progress.Advance();
+                                              is_first = false;
+                                              progress.Begin(absl::StrCat("fitting ", light.name));
+                                            });
+  progress.Advance();
+  Outcome outcome = {std::move(compared.comparisons)};
   if (draws) {
     progress.Begin("drawing");
     const PictureOptions picture = {
         TitleOf(flags.readback_path), options.samples, ShortMethodText(options)};
     outcome.picture =
-        surfaces.ok() ? DrawPicture(*surfaces, outcome.comparisons, flags.map, picture, typeface)
-                      : surfaces.status();
+        compared.surfaces.ok()
+            ? DrawPicture(*compared.surfaces, outcome.comparisons, flags.map, picture, typeface)
+            : compared.surfaces.status();
   }
   return outcome;
 }

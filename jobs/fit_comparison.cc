@@ -71,7 +71,11 @@ FitOptions FigureOptions(const FitOptions& options) {
 }
 
 FitOptions FocusedOptions(const FitOptions& options) {
-  FitOptions focused = options;
+  FitOptions focused;
+  focused.samples.max_depth_bend = options.samples.max_depth_bend;
+  focused.samples.depth_noise = options.samples.depth_noise;
+  focused.margin_percent = options.margin_percent;
+  focused.margin_texels = options.margin_texels;
   focused.search = Search::kFocused;
   focused.affine = Affine::kMinAreaRectangle;
   focused.cover = Cover::kReceivers;
@@ -102,6 +106,22 @@ Comparison Compare(const Surfaces& surfaces,
           (*judge)(FitOne(surfaces, light, map, PublishedOptions(options))),
           (*judge)(std::move(final)),
           time_ms};
+}
+
+ComparedReadback CompareLights(const Readback& readback,
+                               absl::Span<const Light> lights,
+                               absl::Span<const absl::Status> light_status,
+                               MapSize map,
+                               const FitOptions& options,
+                               const std::function<void(const Light&)>& before_light) {
+  ComparedReadback result = {FindSurfaces(readback, LightMask(lights), options.samples), {}};
+  for (size_t i = 0; i < lights.size(); ++i) {
+    before_light(lights[i]);
+    const absl::Status& status = light_status[i].ok() ? result.surfaces.status() : light_status[i];
+    result.comparisons.push_back(status.ok() ? Compare(*result.surfaces, lights[i], map, options)
+                                             : FailedComparison(lights[i], status));
+  }
+  return result;
 }
 
 Comparison FailedComparison(const Light& light, const absl::Status& status) {

@@ -3,7 +3,12 @@
 // One light fitted by the method asked for, beside the two methods that people know.
 #pragma once
 
+#include <functional>
+#include <vector>
+
+#include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "absl/types/span.h"
 #include "geometry/light.h"
 #include "optimizer/evaluate.h"
 #include "optimizer/fit_options.h"
@@ -27,8 +32,8 @@ struct Comparison {
   double final_time_ms = 0;  // for this light; the surfaces of the read-back are found once for all
 };
 
-// What every table's figures are over, whichever way a matrix was made: the samples that a fit takes
-// by default (SampleOptions), in the metric of `options`.
+// What every table's figures are over, whichever way a matrix was made: the samples that a fit
+// takes by default (SampleOptions), in the metric of `options`.
 FitOptions FigureOptions(const FitOptions& options);
 
 // The yardsticks' options: with the margin of `options`, else as their authors have it.
@@ -40,6 +45,20 @@ Comparison Compare(const Surfaces& surfaces,
                    const Light& light,
                    MapSize map,
                    const FitOptions& options);
+
+// All lights of a read-back, whose surfaces are found once. `light_status[l]` belongs to lights[l]:
+// ok, or why its shadow could not be read. An error that concerns the whole read-back is every
+// light's, and that of `surfaces`.
+struct ComparedReadback {
+  absl::StatusOr<Surfaces> surfaces;
+  std::vector<Comparison> comparisons;
+};
+ComparedReadback CompareLights(const Readback& readback,
+                               absl::Span<const Light> lights,
+                               absl::Span<const absl::Status> light_status,
+                               MapSize map,
+                               const FitOptions& options,
+                               const std::function<void(const Light&)>& before_light);
 
 // The same for a light that could not even be read.
 Comparison FailedComparison(const Light& light, const absl::Status& status);

@@ -20,8 +20,7 @@ from typing import Dict, List
 READBACK = "base geometry optimizer/readback"
 ENERGY = f"{READBACK} optimizer/energy"
 SEARCH = f"{ENERGY} optimizer/search"
-FACADE = "optimizer/fit_options.h optimizer/light_matrix.h"
-FIGURES = f"{SEARCH} {FACADE} optimizer/figures"
+FIGURES = f"{SEARCH} optimizer/figures"
 FIT = f"{FIGURES} optimizer"
 SIZING = f"{FIT} optimizer/sizing"
 CORE = f"{SIZING} optimizer/tracking"
@@ -36,8 +35,6 @@ MAY_INCLUDE = {
     "optimizer/readback": READBACK,
     "optimizer/energy": ENERGY,
     "optimizer/search": SEARCH,
-    "optimizer/fit_options.h": SEARCH,  # what goes into a fit and comes out of it: others speak of
-    "optimizer/light_matrix.h": SEARCH,  # it as well, below the fit itself
     "optimizer/figures": FIGURES,
     "optimizer": FIT,
     "optimizer/sizing": SIZING,
@@ -50,7 +47,7 @@ MAY_INCLUDE = {
     "jobs": IO,
     "jobs/compare": f"{IO} jobs methods render",
     "jobs/shot": f"{IO} jobs",
-    "picture": f"{CORE} methods render jobs jobs/*",
+    "picture": f"{JOBS} methods render",
     "calls": f"{IO} jobs",
     "server": "base lightfit io calls",
     "cli/flags": EVERYTHING_BELOW_CLI,

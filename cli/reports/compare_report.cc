@@ -18,10 +18,12 @@ constexpr char kPixelLegend[] =
     "Outside: wrong pixels that lie outside the map.\n";
 constexpr char kFigureLegend[] =
     "Foretold: wrong pixels that the read-back alone lets expect, of all pixels of the image.\n"
-    "Energy: Chong and Gortler's, squared footprints summed over the read-back's shadow-edge "
-    "pixels;\n"
-    "lower is better. It is what as-published and line minimise, whatever lightfit does.\n"
-    "Footprint: how far one texel reaches on the screen, in read-back pixels; below 1 is finer.\n";
+    "Energy: Chong and Gortler's, squared footprints summed; lower is better. As-published and "
+    "line\n"
+    "minimise it, over fewer pixels. Footprint: how far one texel reaches on the screen, in "
+    "read-back\n"
+    "pixels; below 1 is finer. Both are over the shadow-edge pixels that a fit takes by default,\n"
+    "whatever the method took.\n";
 constexpr char kCrawlLegend[] =
     "Crawl, to the next frame: how far points of the scene move within their texels, root mean "
     "square,\n"

@@ -11,11 +11,11 @@
 #include "base/progress.h"
 #include "cli/reports/compare_report.h"
 #include "jobs/compare/totals.h"
+#include "optimizer/figures/figures.h"
 #include "picture/bar_chart.h"
 #include "picture/compare_choice.h"
 #include "picture/shadow_panel.h"
 #include "picture/theme.h"
-#include "optimizer/figures/figures.h"
 
 namespace lightfit {
 namespace {
@@ -29,7 +29,7 @@ ComparedMap Row(const std::string& name, int64_t ideal, int64_t practical, doubl
   map.wrong = WrongPixels();
   map.wrong->ideal = ideal;
   map.wrong->practical = practical;
-  map.figures = MapFigures();
+  map.figures = Figures();
   map.figures->energy = energy;
   return map;
 }
