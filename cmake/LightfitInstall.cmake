@@ -1,8 +1,8 @@
-# What `cmake --install` puts where: geometry and optimizer with their headers, the package that
-# find_package(lightfit) finds, and the command-line program. Included after the targets exist.
+# What `cmake --install` puts where: the core with its headers, the packages that find_package(lightfit)
+# and pkg-config find, the schema, the licence, and the program. Included after the targets exist.
 #
 #   find_package(lightfit REQUIRED)
-#   target_link_libraries(engine PRIVATE lightfit::optimizer)    #include <lightfit/optimizer/fit.h>
+#   target_link_libraries(engine PRIVATE lightfit::optimizer)    #include "lightfit/optimizer/fit.h"
 
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -10,8 +10,15 @@ set(LIGHTFIT_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/lightfit)
 
 install(TARGETS lightfit_base lightfit_geometry lightfit_optimizer EXPORT lightfitTargets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(DIRECTORY base geometry optimizer DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lightfit
-  FILES_MATCHING PATTERN "*.h")
+# Headers include each other as "lightfit/geometry/light.h" once they are installed, so that an
+# engine's include path gains one name and not `base/`, `geometry/` and `optimizer/`.
+install(CODE "
+  set(from [[${PROJECT_SOURCE_DIR}]])
+  set(to \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR}/lightfit\")
+  include([[${PROJECT_SOURCE_DIR}/cmake/InstallHeaders.cmake]])")
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/proto/lightfit
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/lightfit/proto FILES_MATCHING PATTERN "*.proto")
 if(TARGET lightfit)
   install(TARGETS lightfit RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
@@ -26,3 +33,10 @@ write_basic_package_version_file(
 install(FILES
   ${PROJECT_BINARY_DIR}/lightfitConfig.cmake ${PROJECT_BINARY_DIR}/lightfitConfigVersion.cmake
   DESTINATION ${LIGHTFIT_PACKAGE_DIR})
+
+set(LIGHTFIT_PKGCONFIG_CERES "")
+if(LIGHTFIT_WITH_CERES)
+  set(LIGHTFIT_PKGCONFIG_CERES "-lceres -lglog")   # Ceres has no file of its own
+endif()
+configure_file(${PROJECT_SOURCE_DIR}/cmake/lightfit.pc.in ${PROJECT_BINARY_DIR}/lightfit.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/lightfit.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -59,8 +59,7 @@ function(lightfit_library name)
     EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
   target_include_directories(lightfit_${name} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
-    $<INSTALL_INTERFACE:include>
-    $<INSTALL_INTERFACE:include/lightfit>)
+    $<INSTALL_INTERFACE:include>)
   target_compile_features(lightfit_${name} PUBLIC cxx_std_20)
   target_link_libraries(lightfit_${name}
     PUBLIC ${ARG_DEPS} PRIVATE $<BUILD_INTERFACE:lightfit_settings> ${ARG_PRIVATE_DEPS})

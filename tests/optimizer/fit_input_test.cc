@@ -9,6 +9,7 @@
 #include "optimizer/fit.h"
 #include "tests/testing/matchers.h"
 #include "tests/testing/plane_readback.h"
+#include "tests/testing/refiners.h"
 #include "tests/testing/test_scene.h"
 
 namespace lightfit {
@@ -127,7 +128,7 @@ TEST(FitLight, SamplesOnALineAreFitted) {
     PlaneReadback readback = FloorReadback();
     readback.Cast(0, [&](int x, int y) { return vertical ? x >= 20 : y >= 15; });
     for (const Light& light : {kSun, kLamp}) {
-      for (const Refiner refiner : {Refiner::kTinySolver, Refiner::kCeres}) {
+      for (const Refiner refiner : testing::Refiners()) {
         FitOptions options;
         options.refiner = refiner;
         const auto matrix = FitLight(readback.View(), light, kMap, options);

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "optimizer/figures/footprint_image.h"
+#include "optimizer/search/refine_ceres.h"
 #include "tests/testing/matchers.h"
 #include "tests/testing/test_scene.h"
 
@@ -46,7 +47,7 @@ std::vector<Choice> Choices() {
   add("line search", [](FitOptions& o) { o.search = Search::kRotationLineSearch; });
   add("ceres", [](FitOptions& o) {
     o.search = Search::kRotationLineSearchRefined;
-    o.refiner = Refiner::kCeres;
+    if (HasCeres()) o.refiner = Refiner::kCeres;
   });
   add("skewed", [](FitOptions& o) { o.affine = Affine::kSkewedRectangle; });
   add("rectangle", [](FitOptions& o) { o.affine = Affine::kMinAreaRectangle; });

@@ -14,6 +14,7 @@
 #include "base/stop.h"
 #include "optimizer/evaluate.h"
 #include "optimizer/fit.h"
+#include "optimizer/search/refine_ceres.h"
 #include "optimizer/sizing/allocation.h"
 #include "optimizer/sizing/map_shapes.h"
 #include "optimizer/sizing/tolerance.h"
@@ -141,7 +142,7 @@ TEST(StopMoments, FitsAreCancelledOrTheSameWheneverItIsAskedFor) {
       FitOptions options;
       options.metric = metric;
       options.search = search;
-      options.refiner = Refiner::kCeres;
+      if (HasCeres()) options.refiner = Refiner::kCeres;
       ExpectCancelledOrTheSame(10, &random, FittingAll(small, options));
     }
   }

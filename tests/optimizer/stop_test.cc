@@ -21,6 +21,7 @@
 #include "optimizer/tracking/tracker.h"
 #include "tests/testing/fit_station.h"
 #include "tests/testing/matchers.h"
+#include "tests/testing/refiners.h"
 #include "tests/testing/test_scene.h"
 
 namespace lightfit {
@@ -162,7 +163,7 @@ TEST(Stop, NoAxisIsEvaluatedOnceItIsAskedFor) {
     SummaryEvaluator evaluator(station.summary, problem, testing::kMinW);
     EXPECT_FALSE(evaluator.Evaluate(Eigen::Vector3d::UnitZ()).has_value());
     RotationLineSearch(evaluator, start, /*rounds=*/3);
-    for (const Refiner refiner : {Refiner::kTinySolver, Refiner::kCeres}) {
+    for (const Refiner refiner : testing::Refiners()) {
       const SearchResult result =
           GlobalSearch(station.summary, evaluator, start, 1'000'000'000, refiner);
       EXPECT_EQ(result.fit.energy, start.energy);

@@ -1,5 +1,6 @@
 # Installs the build into an empty prefix, then configures, builds and runs the consumer against it.
-# In:   LIGHTFIT_BINARY_DIR, CONSUMER_SOURCE_DIR, WORK_DIR, GENERATOR, CXX_COMPILER[_LAUNCHER].
+# In:   LIGHTFIT_BINARY_DIR, LIGHTFIT_WITH_CERES, CONSUMER_SOURCE_DIR, WORK_DIR, GENERATOR,
+#       CXX_COMPILER[_LAUNCHER].
 # Out:  success, or the first step that failed with its output.
 
 function(run_step what)
@@ -22,3 +23,35 @@ run_step("configure" ${CMAKE_COMMAND} -S ${CONSUMER_SOURCE_DIR} -B ${WORK_DIR}/b
   -DCMAKE_CXX_COMPILER_LAUNCHER=${CXX_COMPILER_LAUNCHER})
 run_step("build" ${CMAKE_COMMAND} --build ${WORK_DIR}/build)
 run_step("run" ${WORK_DIR}/build/consumer)
+
+# Once more for those who do not use CMake.
+execute_process(COMMAND ${CMAKE_COMMAND} -E env PKG_CONFIG_PATH=${WORK_DIR}/prefix/lib/pkgconfig
+  pkg-config --define-prefix --cflags --libs lightfit
+  RESULT_VARIABLE result OUTPUT_VARIABLE flags OUTPUT_STRIP_TRAILING_WHITESPACE)
+if(NOT result EQUAL 0)
+  message(FATAL_ERROR "pkg-config knows no lightfit")
+endif()
+separate_arguments(flags)
+run_step("build with pkg-config" ${CXX_COMPILER} -std=c++20 ${CONSUMER_SOURCE_DIR}/consumer.cc
+  -o ${WORK_DIR}/with_pkg_config ${flags})
+run_step("run" ${WORK_DIR}/with_pkg_config)
+
+# One name on an engine's include path, the licence and the schema beside it.
+file(GLOB names RELATIVE ${WORK_DIR}/prefix/include ${WORK_DIR}/prefix/include/*)
+if(NOT names STREQUAL "lightfit")
+  message(FATAL_ERROR "include/ has ${names}, want lightfit alone")
+endif()
+foreach(file share/doc/lightfit/LICENSE)
+  if(NOT EXISTS ${WORK_DIR}/prefix/${file})
+    message(FATAL_ERROR "${file} is not installed")
+  endif()
+endforeach()
+
+# Without Ceres an engine loads none of what comes with it.
+if(NOT LIGHTFIT_WITH_CERES)
+  execute_process(COMMAND ldd ${WORK_DIR}/build/consumer OUTPUT_VARIABLE libraries)
+  if(libraries MATCHES "ceres|cholmod|suitesparse|spqr|blas|lapack|atlas|gfortran|glog|gflags")
+    message(FATAL_ERROR "the consumer loads ${CMAKE_MATCH_0}:\n${libraries}")
+  endif()
+  message(STATUS "no Ceres, SuiteSparse, BLAS, gfortran or glog: ok")
+endif()

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "geometry/affine_depth.h"
+#include "optimizer/readback/samples.h"
 #include "tests/testing/matchers.h"
 #include "tests/testing/plane_readback.h"
 #include "tests/testing/test_scene.h"
@@ -139,30 +140,39 @@ TEST(FindSurfaces, TilesAreThoseOfAllReceivers) {
   EXPECT_EQ(receivers.tiles.num_surfaces + receivers.tiles.num_background, 323 * 177);
 }
 
-// With outlines every candidate on a surface is a boundary pixel but for those without a neighbour
-// along x or y; without them only those whose surface continues, which are among the others with
-// the same gradient.
-TEST(FindSurfaces, OutlinesAddToTheBoundary) {
-  int64_t num_added = 0;
+// Outlines are marked, so that one pass serves samples with them and without: those are the pixels
+// for which no gradient is known without a side; the others have the gradient they have without.
+TEST(FindSurfaces, MarksOutlinesForThoseWhoDoNotWantThem) {
+  SampleOptions without;
+  without.use_outlines = false;
+  int64_t num_outlines = 0;
   for (uint64_t seed = 1; seed <= 4; ++seed) {
     const testing::TestScene scene(seed, 3);
-    const Surfaces with = *FindSurfaces(scene.View(), 7u, {});
-    const Surfaces without = *FindSurfaces(scene.View(), 7u, FitOptions::AsPublished().samples);
-    auto next = with.boundary.begin();
-    for (const BoundaryPixel& pixel : without.boundary) {
-      while (next != with.boundary.end() && (next->x != pixel.x || next->y != pixel.y)) ++next;
-      ASSERT_NE(next, with.boundary.end());
-      EXPECT_EQ(next->d_x, pixel.d_x);
-      EXPECT_EQ(next->d_y, pixel.d_y);
-      EXPECT_EQ(next->lights, pixel.lights);
+    const Surfaces surfaces = *FindSurfaces(scene.View(), 7u, without);
+    for (const BoundaryPixel& pixel : surfaces.boundary) {
+      DepthGradient gradient;
+      const bool continues = DepthGradientAt(
+          scene.View(), surfaces.affine_depth, without, pixel.x, pixel.y, &gradient);
+      EXPECT_NE(continues, pixel.is_outline);
+      num_outlines += pixel.is_outline ? 1 : 0;
+      if (!continues) continue;
+      EXPECT_EQ(gradient.d_x, pixel.d_x);
+      EXPECT_EQ(gradient.d_y, pixel.d_y);
     }
-    num_added += static_cast<int64_t>(with.boundary.size() - without.boundary.size());
-    for (int bit = 0; bit < 3; ++bit) {
-      EXPECT_EQ(with.counts[bit].candidates, without.counts[bit].candidates);
-      EXPECT_LE(with.counts[bit].discontinuity, without.counts[bit].discontinuity / 10);
+    for (const Light& light : scene.lights) {
+      const Eigen::Matrix3d light_space = Eigen::Matrix3d::Identity();
+      const SampleCounts with_counts =
+          SelectSamples(surfaces, light, {}, light_space, false).counts;
+      const SampleCounts counts =
+          SelectSamples(surfaces, light, without, light_space, false).counts;
+      EXPECT_EQ(with_counts.candidates, counts.candidates);
+      EXPECT_LE(with_counts.discontinuity, counts.discontinuity / 10);
+      EXPECT_EQ(counts.used,
+                counts.candidates - counts.background - counts.discontinuity - counts.facing_away -
+                    counts.edge_on);
     }
   }
-  EXPECT_GE(num_added, 500);
+  EXPECT_GE(num_outlines, 500);
 }
 
 TEST(FindSurfaces, BoundaryIsTheSameWhateverOtherLightsAreAskedFor) {

@@ -11,6 +11,7 @@
 #include "optimizer/fit.h"
 #include "tests/testing/fit_station.h"
 #include "tests/testing/matchers.h"
+#include "tests/testing/refiners.h"
 
 namespace lightfit {
 namespace {
@@ -24,7 +25,7 @@ constexpr MapSize kMap = {1024, 512};
 
 TEST(GlobalSearch, NeverAboveItsStartAndEveryStationImproves) {
   for (const FitStation& station : FitStations(8, Affine::kMinEnergyParallelogram)) {
-    for (const Refiner refiner : {Refiner::kTinySolver, Refiner::kCeres}) {
+    for (const Refiner refiner : testing::Refiners()) {
       SummaryEvaluator evaluator(station.summary, station.problem, kMinW);
       const AffineFit start = station.Start(evaluator);
       const SearchResult result = GlobalSearch(station.summary, evaluator, start, 10, refiner);
@@ -77,10 +78,11 @@ TEST(GlobalSearch, NeverAbovePublishedAndFocused) {
 
 // After the polish it matters little which solver refined.
 TEST(GlobalSearch, RefinersEndAtNearlyTheSameEnergy) {
+  if (!HasCeres()) GTEST_SKIP() << "this build has no Ceres";
   std::vector<double> differences;
   for (const FitStation& station : FitStations(10, Affine::kMinEnergyParallelogram)) {
     double energies[2] = {};
-    for (const Refiner refiner : {Refiner::kTinySolver, Refiner::kCeres}) {
+    for (const Refiner refiner : testing::Refiners()) {
       SummaryEvaluator evaluator(station.summary, station.problem, kMinW);
       const AffineFit start = station.Start(evaluator);
       energies[static_cast<int>(refiner)] =

@@ -12,6 +12,7 @@
 #include "tests/testing/fit_station.h"
 #include "tests/testing/matchers.h"
 #include "tests/testing/random_cases.h"
+#include "tests/testing/refiners.h"
 
 namespace lightfit {
 namespace {
@@ -113,7 +114,7 @@ TEST(RefineAxis, NeverWorseThanItsStart) {
     int num_improved = 0;
     for (const FitStation& station : FitStations(5, affine)) {
       const AffineFit start = station.Start();
-      for (const Refiner refiner : {Refiner::kTinySolver, Refiner::kCeres}) {
+      for (const Refiner refiner : testing::Refiners()) {
         const SearchResult result =
             RefineAxis(station.summary, station.problem, kMinW, refiner, start);
         EXPECT_LE(result.fit.energy, start.energy);
@@ -131,6 +132,7 @@ TEST(RefineAxis, NeverWorseThanItsStart) {
 // Both minimise the same cost from the same start. Either may stop short at a kink, and they take
 // different steps towards it, so the statement is about most lights.
 TEST(RefineAxis, CeresAndTinySolverAgree) {
+  if (!HasCeres()) GTEST_SKIP() << "this build has no Ceres";
   std::vector<double> differences;
   for (const FitStation& station : FitStations(8, Affine::kMinEnergyParallelogram)) {
     const AffineFit start = station.Start();
@@ -152,7 +154,7 @@ TEST(RefineAxis, CeresAndTinySolverAgree) {
 TEST(RefineAxis, KeepsAStartThatCannotBeRefined) {
   const FitStation station = FitStations(1, Affine::kMinEnergyParallelogram).front();
   AffineFit start = station.Start();
-  for (const Refiner refiner : {Refiner::kTinySolver, Refiner::kCeres}) {
+  for (const Refiner refiner : testing::Refiners()) {
     for (const double energy : {0.0, std::nan("")}) {
       start.energy = energy;
       const Eigen::Matrix3d before = start.map_from_ray;

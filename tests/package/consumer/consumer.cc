@@ -1,10 +1,10 @@
 // The smallest program that uses the installed library: a camera straight above a floor, a square
 // shadow in the middle of the image, one slanted light.
-#include <lightfit/optimizer/fit.h>
-
 #include <cstdint>
 #include <cstdio>
 #include <vector>
+
+#include "lightfit/optimizer/fit.h"
 
 int main() {
   constexpr int kSize = 32;
