@@ -45,7 +45,7 @@ absl::StatusOr<Split> FitAll(const Input& input,
   for (size_t i = 0; i < lights.size(); ++i) {
     const absl::StatusOr<LightMatrix> fit = FitLight(input.View(), lights[i].light, maps[i]);
     if (!fit.ok()) return fit.status();
-    split.energy += lights[i].weight * fit->energy;
+    split.energy += lights[i].weight * fit->figures.energy;
     split.texels += TexelsOf(maps[i]);
   }
   return split;

@@ -20,7 +20,7 @@ FitInput MakeFitInput(Input input, std::string name) {
   const auto fits = FitLights(input.View(), input.lights, kFitMap, published);
   std::vector<std::pair<int, Light>> fitted;
   for (size_t i = 0; i < fits.size(); ++i) {
-    if (fits[i].ok()) fitted.emplace_back(fits[i]->evaluations, input.lights[i]);
+    if (fits[i].ok()) fitted.emplace_back(fits[i]->search.evaluations, input.lights[i]);
   }
   std::stable_sort(
       fitted.begin(), fitted.end(), [](const auto& a, const auto& b) { return a.first < b.first; });

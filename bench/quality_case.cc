@@ -71,8 +71,8 @@ absl::StatusOr<QualityCase> MeasureQuality(const std::string& input,
     }
     const MatrixQuality quality = check->Measure(matrix->map_from_world, map);
     result.results.push_back(
-        {method.name, quality.energy, matrix->energy, quality.outside_texels, matrix->evaluations});
-    if (method.name == "default") energy_start = matrix->energy_start;
+        {method.name, quality.energy, matrix->figures.energy, quality.outside_texels, matrix->search.evaluations});
+    if (method.name == "default") energy_start = matrix->search.energy_start;
   }
   const double least = BruteForceFit(*summary, map, QualityObjective(), brute_force).energy;
   result.results.push_back({"start", energy_start, energy_start});

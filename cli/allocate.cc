@@ -19,7 +19,7 @@
 #include "jobs/allocate_lights.h"
 #include "jobs/fit_summary.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 namespace {
 
 // A bar on stderr while it works.
@@ -64,9 +64,7 @@ int PrintFailedLights(const AllocationReport& report) {
     const std::string name = absl::StrCat("light \"", fit.light.name, "\"");
     const std::optional<ReachedTolerance>& reached = report.entries[i].reached;
     if (!fit.matrix.ok()) {
-      std::string message(fit.matrix.status().message());
-      if (!absl::StrContains(message, name)) message = absl::StrCat(name, ": ", message);
-      PrintError(absl::StrCat("no map for ", message));
+      PrintFailedLight("map", fit.light.name, fit.matrix.status());
       ++num_failed;
     } else if (reached.has_value() && !reached->is_met) {
       PrintError(
@@ -92,11 +90,6 @@ void PrintMissingFrames(const AllocationReport& report, const SummarySet& summar
       PrintWarning(MissingFramesText(light));
     }
   }
-}
-
-int Fail(ExitCode code, const absl::Status& status) {
-  PrintError(status.message());
-  return code;
 }
 
 }  // namespace
@@ -136,4 +129,4 @@ int RunAllocate(const AllocateFlags& flags) {
   return num_failed > 0 ? kExitIncomplete : kExitOk;
 }
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

@@ -7,7 +7,7 @@
 #include "cli/flags/allocate_flags.h"
 #include "cli/verb.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 
 std::function<int()> DeclareAllocate(CLI::App* app);
 
@@ -15,4 +15,4 @@ std::function<int()> DeclareAllocate(CLI::App* app);
 // no map.
 int RunAllocate(const AllocateFlags& flags);
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

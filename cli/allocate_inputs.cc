@@ -12,7 +12,7 @@
 #include "cli/flags/fit_inputs.h"
 #include "cli/summary_inputs.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 namespace {
 
 absl::StatusOr<std::vector<double>> WeightsOf(const std::map<std::string, double>& weights,
@@ -86,4 +86,4 @@ absl::StatusOr<AllocateInputs> ReadAllocateInputs(const AllocateFlags& flags) {
   return inputs;
 }
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

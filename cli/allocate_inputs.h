@@ -12,7 +12,7 @@
 #include "io/readback_exr.h"
 #include "jobs/allocate_lights.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 
 struct AllocateInputs {
   std::optional<ReadbackFile> readback;  // task.readback refers to it
@@ -24,4 +24,4 @@ struct AllocateInputs {
 // summaries cannot serve.
 absl::StatusOr<AllocateInputs> ReadAllocateInputs(const AllocateFlags& flags);
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

@@ -19,7 +19,7 @@
 #include "picture/compare_page.h"
 #include "picture/png.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 namespace {
 
 absl::Status CheckOutputs(const CompareFlags& flags) {
@@ -80,10 +80,7 @@ int PrintFailedLights(const std::vector<LightComparison>& comparisons) {
     const absl::Status& status = comparison.lightfit().status;
     if (status.ok()) continue;
     ++num_failed;
-    std::string message(status.message());
-    const std::string name = absl::StrCat("light \"", comparison.light.name, "\"");
-    if (!absl::StrContains(message, name)) message = absl::StrCat(name, ": ", message);
-    PrintError(absl::StrCat("no matrix for ", message));
+    PrintFailedLight("matrix", comparison.light.name, status);
   }
   return num_failed;
 }
@@ -139,11 +136,6 @@ absl::Status WriteOutputs(const CompareFlags& flags,
   return status;
 }
 
-int Fail(ExitCode code, const absl::Status& status) {
-  PrintError(status.message());
-  return code;
-}
-
 }  // namespace
 
 std::function<int()> DeclareCompare(CLI::App* app) {
@@ -173,4 +165,4 @@ int RunCompare(const CompareFlags& flags) {
   return num_failed > 0 ? kExitIncomplete : kExitOk;
 }
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

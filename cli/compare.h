@@ -6,7 +6,7 @@
 #include "cli/flags/compare_flags.h"
 #include "cli/verb.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 
 std::function<int()> DeclareCompare(CLI::App* app);
 
@@ -14,4 +14,4 @@ std::function<int()> DeclareCompare(CLI::App* app);
 // matrix for some of the lights.
 int RunCompare(const CompareFlags& flags);
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

@@ -9,7 +9,7 @@
 #include "base/suggest.h"
 #include "render/sight.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 namespace {
 
 absl::Status ReadSceneInputs(const CompareFlags& flags, CompareInputs* inputs) {
@@ -192,4 +192,4 @@ absl::StatusOr<CompareInputs> ReadCompareInputs(const CompareFlags& flags) {
   return inputs;
 }
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

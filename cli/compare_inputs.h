@@ -15,7 +15,7 @@
 #include "jobs/compare/rows.h"
 #include "jobs/compare/stage.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 
 struct CompareInputs {
   // The scene, or the read-back and maybe its next frame: they outlive `stage` and `next`.
@@ -36,4 +36,4 @@ struct CompareInputs {
 
 absl::StatusOr<CompareInputs> ReadCompareInputs(const CompareFlags& flags);
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

@@ -3,12 +3,10 @@
 // What a verb tells the shell, and how it speaks on stderr.
 #pragma once
 
-#include <cstdio>
-#include <string>
-
+#include "absl/status/status.h"
 #include "absl/strings/string_view.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 
 enum ExitCode {
   kExitOk = 0,         // everything asked for was done
@@ -17,13 +15,17 @@ enum ExitCode {
   kExitIncomplete = 3  // done, but for some lights, which were named on stderr
 };
 
-// "lightfit: error: ..." on stderr, one line.
-inline void PrintError(absl::string_view message) {
-  std::fprintf(stderr, "lightfit: error: %s\n", std::string(message).c_str());
-}
+// "lightfit: error: ..." on stderr, one line. Where the library names an option that has a flag,
+// the flag is what is said.
+void PrintError(absl::string_view message);
+void PrintWarning(absl::string_view message);
 
-inline void PrintWarning(absl::string_view message) {
-  std::fprintf(stderr, "lightfit: warning: %s\n", std::string(message).c_str());
-}
+// The error on stderr; returns `code`.
+int Fail(ExitCode code, const absl::Status& status);
 
-}  // namespace lightfit
+// "no matrix for light "sun": ..." on stderr; `what` is what there is none of.
+void PrintFailedLight(absl::string_view what,
+                      absl::string_view light_name,
+                      const absl::Status& status);
+
+}  // namespace lightfit::cli

@@ -20,7 +20,7 @@
 #include "picture/text.h"
 #include "wire/result_json.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 namespace {
 
 absl::Status CheckOutputs(const FitFlags& flags) {
@@ -33,8 +33,8 @@ absl::Status CheckOutputs(const FitFlags& flags) {
   return absl::OkStatus();
 }
 
-void WarnAboutPixels(const std::vector<Comparison>& comparisons) {
-  for (const Comparison& comparison : comparisons) {
+void WarnAboutPixels(const std::vector<FitComparison>& comparisons) {
+  for (const FitComparison& comparison : comparisons) {
     if (!comparison.final.ok()) continue;
     const int64_t num_invalid = comparison.final->matrix.figures.samples.invalid_depth;
     if (num_invalid > 0) {
@@ -47,15 +47,12 @@ void WarnAboutPixels(const std::vector<Comparison>& comparisons) {
 }
 
 // Names the lights without a matrix on stderr and returns how many there are.
-int PrintFailedLights(const std::vector<Comparison>& comparisons) {
+int PrintFailedLights(const std::vector<FitComparison>& comparisons) {
   int num_failed = 0;
-  for (const Comparison& comparison : comparisons) {
+  for (const FitComparison& comparison : comparisons) {
     if (comparison.final.ok()) continue;
     ++num_failed;
-    std::string message(comparison.final.status().message());
-    const std::string name = absl::StrCat("light \"", comparison.light.name, "\"");
-    if (message.find(name) == std::string::npos) message = absl::StrCat(name, ": ", message);
-    PrintError(absl::StrCat("no matrix for ", message));
+    PrintFailedLight("matrix", comparison.light.name, comparison.final.status());
   }
   return num_failed;
 }
@@ -63,7 +60,7 @@ int PrintFailedLights(const std::vector<Comparison>& comparisons) {
 FitReport JsonReport(const FitFlags& flags,
                      const FitOptions& options,
                      const ReadbackFile& file,
-                     const std::vector<Comparison>& comparisons) {
+                     const std::vector<FitComparison>& comparisons) {
   FitReport report;
   report.source = flags.readback_path;
   report.camera = file.camera;
@@ -71,7 +68,7 @@ FitReport JsonReport(const FitFlags& flags,
   report.options = options;
   report.map = flags.map;
   report.clip = flags.clip;
-  for (const Comparison& comparison : comparisons) {
+  for (const FitComparison& comparison : comparisons) {
     LightFit fit;
     fit.light = comparison.light;
     if (!comparison.final.ok()) {
@@ -95,7 +92,7 @@ std::string TitleOf(const std::string& path) {
 
 // What is computed before anything is printed, so that the progress bar has the terminal to itself.
 struct Outcome {
-  std::vector<Comparison> comparisons;
+  std::vector<FitComparison> comparisons;
   absl::StatusOr<Canvas> picture = absl::UnknownError("not drawn");
 };
 
@@ -150,11 +147,6 @@ absl::Status WriteOutputs(const FitFlags& flags,
   return WritePng(*outcome.picture, flags.picture_path);
 }
 
-int Fail(ExitCode code, const absl::Status& status) {
-  PrintError(status.message());
-  return code;
-}
-
 }  // namespace
 
 std::function<int()> DeclareFit(CLI::App* app) {
@@ -186,4 +178,4 @@ int RunFit(const FitFlags& flags) {
   return num_failed > 0 ? kExitIncomplete : kExitOk;
 }
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

@@ -6,7 +6,7 @@
 #include "cli/flags/fit_flags.h"
 #include "cli/verb.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 
 std::function<int()> DeclareFit(CLI::App* app);
 
@@ -14,4 +14,4 @@ std::function<int()> DeclareFit(CLI::App* app);
 // no matrix.
 int RunFit(const FitFlags& flags);
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

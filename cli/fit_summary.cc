@@ -14,7 +14,7 @@
 #include "jobs/fit_summary.h"
 #include "wire/result_json.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 namespace {
 
 struct SummaryFit {
@@ -102,11 +102,6 @@ absl::Status WriteJson(const FitFlags& flags,
   return WriteFitResultJson(flags.json_path, result);
 }
 
-int Fail(ExitCode code, const absl::Status& status) {
-  PrintError(status.message());
-  return code;
-}
-
 }  // namespace
 
 int RunFitSummary(const FitFlags& flags) {
@@ -149,4 +144,4 @@ int RunFitSummary(const FitFlags& flags) {
   return num_failed > 0 ? kExitIncomplete : kExitOk;
 }
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

@@ -5,10 +5,10 @@
 
 #include "cli/flags/fit_flags.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 
 // Does what `flags` ask for and returns an ExitCode. The JSON file is written even when some lights
 // have no matrix, and is the same in whatever order the files are named.
 int RunFitSummary(const FitFlags& flags);
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

@@ -21,7 +21,7 @@
 #include "cli/summarize.h"
 #include "cli/verb.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 namespace {
 
 constexpr Verb kVerbs[] = {
@@ -74,14 +74,14 @@ int Main(int argc, char** argv) {
 }
 
 }  // namespace
-}  // namespace lightfit
+}  // namespace lightfit::cli
 
 int main(int argc, char** argv) {
   // The library throws nothing; a library beneath it might, out of memory for one.
   try {
-    return lightfit::Main(argc, argv);
+    return lightfit::cli::Main(argc, argv);
   } catch (const std::exception& error) {
-    lightfit::PrintError(error.what());
-    return lightfit::kExitBadInput;
+    lightfit::cli::PrintError(error.what());
+    return lightfit::cli::kExitBadInput;
   }
 }

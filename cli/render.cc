@@ -27,7 +27,7 @@
 #include "wire/light_proto.h"
 #include "wire/proto_json.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 namespace {
 
 constexpr char kExamples[] =
@@ -269,24 +269,19 @@ absl::Status WriteOutputs(const RenderFlags& flags, const Inputs& inputs, const 
   return WritePng(Canvas(outcome.picture), flags.picture_path);
 }
 
-int Fail(const absl::Status& status) {
-  PrintError(status.message());
-  return kExitBadInput;
-}
-
 int RunRender(const RenderFlags& flags) {
-  if (absl::Status status = CheckOutputs(flags); !status.ok()) return Fail(status);
+  if (absl::Status status = CheckOutputs(flags); !status.ok()) return Fail(kExitBadInput, status);
   const absl::StatusOr<Inputs> inputs = ReadInputs(flags);
-  if (!inputs.ok()) return Fail(inputs.status());
+  if (!inputs.ok()) return Fail(kExitBadInput, inputs.status());
   const absl::StatusOr<Outcome> outcome = Render(flags, *inputs);
-  if (!outcome.ok()) return Fail(outcome.status());
+  if (!outcome.ok()) return Fail(kExitBadInput, outcome.status());
   if (!flags.quiet) {
     std::fputs(ReportText(*inputs, *outcome).c_str(), stdout);
     std::fflush(stdout);
   }
   PrintWarnings(*inputs, *outcome);
   if (absl::Status status = WriteOutputs(flags, *inputs, *outcome); !status.ok()) {
-    return Fail(status);
+    return Fail(kExitBadInput, status);
   }
   return kExitOk;
 }
@@ -299,4 +294,4 @@ std::function<int()> DeclareRender(CLI::App* app) {
   return [flags] { return RunRender(*flags); };
 }
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

@@ -9,9 +9,9 @@ namespace CLI {
 class App;
 }
 
-namespace lightfit {
+namespace lightfit::cli {
 
 // Declares the options; what it returns runs the verb and returns an ExitCode.
 std::function<int()> DeclareRender(CLI::App* app);
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

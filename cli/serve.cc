@@ -15,7 +15,7 @@
 #include "cli/exit_code.h"
 #include "server/server.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 namespace {
 
 constexpr char kExamples[] =
@@ -187,11 +187,6 @@ void ReturnLargeMemory() {
   mallopt(M_MMAP_THRESHOLD, kLargeBytes);
 }
 
-int Fail(const absl::Status& status) {
-  PrintError(status.message());
-  return kExitBadInput;
-}
-
 }  // namespace
 
 std::function<int()> DeclareServe(CLI::App* app) {
@@ -217,7 +212,7 @@ int RunServe(const ServeFlags& flags) {
   std::signal(SIGPIPE, SIG_IGN);
 
   const absl::StatusOr<std::unique_ptr<Server>> server = Server::Start(flags.server);
-  if (!server.ok()) return Fail(server.status());
+  if (!server.ok()) return Fail(kExitBadInput, server.status());
   std::printf("listening on %s\n", (*server)->address().c_str());
   if ((*server)->metrics_port() != 0) {
     std::printf("metrics on port %d\n", (*server)->metrics_port());
@@ -234,4 +229,4 @@ int RunServe(const ServeFlags& flags) {
   return is_complete ? kExitOk : kExitIncomplete;
 }
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

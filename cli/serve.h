@@ -12,7 +12,7 @@ namespace CLI {
 class App;
 }
 
-namespace lightfit {
+namespace lightfit::cli {
 
 struct ServeFlags {
   ServerOptions server;
@@ -26,4 +26,4 @@ std::function<int()> DeclareServe(CLI::App* app);
 // the log anew.
 int RunServe(const ServeFlags& flags);
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

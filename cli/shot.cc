@@ -14,13 +14,8 @@
 #include "picture/shot_page.h"
 #include "picture/text.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 namespace {
-
-int Fail(ExitCode code, const absl::Status& status) {
-  PrintError(status.message());
-  return code;
-}
 
 // Before the work, so that nobody waits for what is there.
 void PrintResuming(const ShotContext& context) {
@@ -79,4 +74,4 @@ int RunShotVerb(const ShotFlags& flags) {
   return errors.empty() ? kExitOk : kExitIncomplete;
 }
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

@@ -6,11 +6,11 @@
 #include "cli/flags/shot_flags.h"
 #include "cli/verb.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 
 std::function<int()> DeclareShot(CLI::App* app);
 
 // Does what `flags` ask for and returns an ExitCode.
 int RunShotVerb(const ShotFlags& flags);
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

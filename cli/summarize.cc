@@ -26,7 +26,7 @@
 #include "optimizer/fit.h"
 #include "wire/result_json.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 namespace {
 
 constexpr char kExamples[] =
@@ -237,11 +237,6 @@ bool PrintMissingFrames(const SummarySet& sum,
   return is_complete;
 }
 
-int Fail(ExitCode code, const absl::Status& status) {
-  PrintError(status.message());
-  return code;
-}
-
 }  // namespace
 
 std::function<int()> DeclareSummarize(CLI::App* app) {
@@ -299,4 +294,4 @@ int RunSummarize(const SummarizeFlags& flags) {
   return num_failed > 0 || !is_complete ? kExitIncomplete : kExitOk;
 }
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

@@ -8,7 +8,7 @@
 #include "cli/flags/fit_flags.h"
 #include "cli/verb.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 
 struct SummarizeFlags {
   std::vector<std::string> inputs;  // read-backs and summary files
@@ -23,4 +23,4 @@ std::function<int()> DeclareSummarize(CLI::App* app);
 // could be used.
 int RunSummarize(const SummarizeFlags& flags);
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

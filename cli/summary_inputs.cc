@@ -10,7 +10,7 @@
 #include "cli/flags/fit_inputs.h"
 #include "jobs/fit_summary.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 
 absl::StatusOr<SummarySet> ReadSummary(const std::string& path,
                                        const std::vector<std::string>& only) {
@@ -74,4 +74,4 @@ std::string TitleText(const std::vector<std::string>& paths) {
   return paths.size() == 1 ? paths.front() : absl::StrCat(paths.size(), " summaries");
 }
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

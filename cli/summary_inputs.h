@@ -13,7 +13,7 @@
 #include "cli/flags/fit_flags.h"
 #include "io/summary_file.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 
 // All of the files, or the first error.
 absl::StatusOr<SummarySet> ReadSummaries(const std::vector<std::string>& paths,
@@ -35,4 +35,4 @@ std::string SourceText(std::vector<std::string> paths);
 // The file's name, or how many there are: for people.
 std::string TitleText(const std::vector<std::string>& paths);
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

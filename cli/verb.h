@@ -9,7 +9,7 @@ namespace CLI {
 class App;
 }
 
-namespace lightfit {
+namespace lightfit::cli {
 
 struct Verb {
   const char* name;
@@ -20,4 +20,4 @@ struct Verb {
   std::function<int()> (*declare)(CLI::App* app);
 };
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

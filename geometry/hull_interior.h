@@ -36,9 +36,9 @@ class Slabs {
 };
 
 // Slabs both ways: where one cuts the edge at a steep angle the other does not.
-class InsideTest {
+class HullInterior {
  public:
-  explicit InsideTest(const Polygon& polygon) : across_x_(polygon, 0), across_y_(polygon, 1) {}
+  explicit HullInterior(const Polygon& polygon) : across_x_(polygon, 0), across_y_(polygon, 1) {}
 
   bool operator()(const Eigen::Vector2d& point) const {
     return across_x_.Contain(point) || across_y_.Contain(point);

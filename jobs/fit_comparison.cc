@@ -90,17 +90,17 @@ FitOptions PublishedOptions(const FitOptions& options) {
   return published;
 }
 
-Comparison Compare(const Surfaces& surfaces,
-                   const Light& light,
-                   MapSize map,
-                   const FitOptions& options) {
+FitComparison CompareFit(const Surfaces& surfaces,
+                         const Light& light,
+                         MapSize map,
+                         const FitOptions& options) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   absl::StatusOr<LightMatrix> final = FitOne(surfaces, light, map, options);
   const double time_ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-  if (!final.ok()) return FailedComparison(light, final.status());
+  if (!final.ok()) return FailedFitComparison(light, final.status());
   const absl::StatusOr<Judge> judge = Judge::Of(surfaces, light, options);
-  if (!judge.ok()) return FailedComparison(light, judge.status());
+  if (!judge.ok()) return FailedFitComparison(light, judge.status());
   return {light,
           (*judge)(FitOne(surfaces, light, map, FocusedOptions(options))),
           (*judge)(FitOne(surfaces, light, map, PublishedOptions(options))),
@@ -118,13 +118,13 @@ ComparedReadback CompareLights(const Readback& readback,
   for (size_t i = 0; i < lights.size(); ++i) {
     before_light(lights[i]);
     const absl::Status& status = light_status[i].ok() ? result.surfaces.status() : light_status[i];
-    result.comparisons.push_back(status.ok() ? Compare(*result.surfaces, lights[i], map, options)
-                                             : FailedComparison(lights[i], status));
+    result.comparisons.push_back(status.ok() ? CompareFit(*result.surfaces, lights[i], map, options)
+                                             : FailedFitComparison(lights[i], status));
   }
   return result;
 }
 
-Comparison FailedComparison(const Light& light, const absl::Status& status) {
+FitComparison FailedFitComparison(const Light& light, const absl::Status& status) {
   return {light, status, status, status, 0};
 }
 

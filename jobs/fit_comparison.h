@@ -24,7 +24,7 @@ struct JudgedMatrix {
   Figures own_figures;  // over the samples of the fit that was asked for, for its result file
 };
 
-struct Comparison {
+struct FitComparison {
   Light light;
   absl::StatusOr<JudgedMatrix> focused;    // the usual focused shadow map, without a warp
   absl::StatusOr<JudgedMatrix> published;  // Chong and Gortler's Algorithm 1
@@ -41,17 +41,17 @@ FitOptions FocusedOptions(const FitOptions& options);
 FitOptions PublishedOptions(const FitOptions& options);
 
 // `light` of the surfaces' read-back, which must have been found for it.
-Comparison Compare(const Surfaces& surfaces,
-                   const Light& light,
-                   MapSize map,
-                   const FitOptions& options);
+FitComparison CompareFit(const Surfaces& surfaces,
+                         const Light& light,
+                         MapSize map,
+                         const FitOptions& options);
 
 // All lights of a read-back, whose surfaces are found once. `light_status[l]` belongs to lights[l]:
 // ok, or why its shadow could not be read. An error that concerns the whole read-back is every
 // light's, and that of `surfaces`.
 struct ComparedReadback {
   absl::StatusOr<Surfaces> surfaces;
-  std::vector<Comparison> comparisons;
+  std::vector<FitComparison> comparisons;
 };
 ComparedReadback CompareLights(const Readback& readback,
                                absl::Span<const Light> lights,
@@ -61,6 +61,6 @@ ComparedReadback CompareLights(const Readback& readback,
                                const std::function<void(const Light&)>& before_light);
 
 // The same for a light that could not even be read.
-Comparison FailedComparison(const Light& light, const absl::Status& status);
+FitComparison FailedFitComparison(const Light& light, const absl::Status& status);
 
 }  // namespace lightfit

@@ -11,6 +11,7 @@
 #include "geometry/convex_hull.h"
 #include "geometry/enclosing_rectangle.h"
 #include "geometry/homography.h"
+#include "geometry/light_map.h"
 #include "geometry/map_size.h"
 #include "geometry/ray_cone.h"
 #include "methods/view_body.h"
@@ -173,10 +174,7 @@ absl::StatusOr<MethodMap> FitBody(const LightBody& body,
 }
 
 absl::StatusOr<MethodMap> CompleteMap(const LightBody& body, Eigen::Matrix3d map_from_ray) {
-  // Seen from the light the map must not be mirrored, or triangles change their facing.
-  if (map_from_ray.determinant() < 0.0) {
-    map_from_ray.row(1) = body.map.height * map_from_ray.row(2) - map_from_ray.row(1);
-  }
+  map_from_ray = Unmirrored(map_from_ray, body.map);
   // w is 1 in the middle for a directional light, the distance along the axis for a point light.
   double middle_w = 0.0;
   DepthRange depth = {std::numeric_limits<double>::infinity(),
@@ -205,12 +203,11 @@ absl::StatusOr<MethodMap> CompleteMap(const LightBody& body, Eigen::Matrix3d map
     return absl::FailedPreconditionError(
         absl::StrFormat("light \"%s\": no receiver lies in front of the map", body.light.name));
   }
+  const absl::StatusOr<Eigen::Matrix4d> map_from_world =
+      FinishMap(map_from_ray, body.ray_from_world, body.light, depth, w_min);
+  if (!map_from_world.ok()) return map_from_world.status();
   MethodMap map;
-  map.map_from_world = MapFromWorld(map_from_ray, body.ray_from_world, body.light, depth, w_min);
-  if (!map.map_from_world.allFinite()) {
-    return absl::InternalError(absl::StrFormat(
-        "light \"%s\": the matrix is not finite; please report this", body.light.name));
-  }
+  map.map_from_world = *map_from_world;
   return map;
 }
 

@@ -29,6 +29,10 @@
 
 namespace lightfit {
 
+// Raised whenever a fit of the same input may come out otherwise, so that who keeps results knows
+// which to compute anew.
+inline constexpr int kFitRevision = 1;
+
 // The matrix for one light.
 absl::StatusOr<LightMatrix> FitLight(const Readback& readback,
                                      const Light& light,

@@ -9,7 +9,7 @@
 
 #include "absl/strings/str_format.h"
 #include "base/stop.h"
-#include "geometry/homography.h"
+#include "geometry/light_map.h"
 #include "optimizer/energy/l1_weights.h"
 
 namespace lightfit {
@@ -20,15 +20,15 @@ absl::Status TooFewSamplesError(const Light& light, const SampleCounts& counts, 
   if (counts.candidates == 0) {
     return absl::FailedPreconditionError(absl::StrFormat(
         "light \"%s\": no shadow boundary among %d receivers: all are lit, or all are shadowed, so "
-        "there is nothing to fit. Leave the light out, or take its focused map (search kFocused, "
-        "--search focused)",
+        "there is nothing to fit. Leave the light out, or take its focused map "
+        "(options.search = kFocused)",
         light.name,
         counts.receivers));
   }
   return absl::FailedPreconditionError(absl::StrFormat(
       "light \"%s\": %d usable samples, want at least %d; of %d boundary pixels %d are background, "
       "%d at depth discontinuities, %d face away from the light, %d are edge-on. Use a larger "
-      "read-back, or take the focused map (search kFocused, --search focused)",
+      "read-back, or take the focused map (options.search = kFocused)",
       light.name,
       counts.used,
       min_samples,
@@ -72,14 +72,6 @@ std::pair<double, double> RangeOfWOverMap(MapSize map,
           std::min(range.second, w_max * kMostStretchAbove)};
 }
 
-// Seen from the light the map must not be mirrored, or triangles change their facing.
-Eigen::Matrix3d Unmirrored(Eigen::Matrix3d map_from_ray, MapSize map) {
-  if (map_from_ray.determinant() < 0.0) {
-    map_from_ray.row(1) = map.height * map_from_ray.row(2) - map_from_ray.row(1);
-  }
-  return map_from_ray;
-}
-
 // The matrix of a map, with a depth row laid over the receivers, and its footprints.
 absl::StatusOr<LightMatrix> LayMatrix(const SearchInputs& inputs,
                                       const Eigen::Matrix3d& map_from_normalized,
@@ -104,15 +96,14 @@ absl::StatusOr<LightMatrix> LayMatrix(const SearchInputs& inputs,
   LightMatrix matrix;
   matrix.light_name = light.name;
   matrix.map = map;
-  matrix.map_from_world = MapFromWorld(map_from_normalized * summary.cover.normalized_from_ray,
-                                       RayFromWorld(light),
-                                       light,
-                                       depth,
-                                       w_min_map);
-  if (!matrix.map_from_world.allFinite()) {
-    return absl::InternalError(
-        absl::StrFormat("light \"%s\": the matrix is not finite; please report this", light.name));
-  }
+  const absl::StatusOr<Eigen::Matrix4d> map_from_world =
+      FinishMap(map_from_normalized * summary.cover.normalized_from_ray,
+                RayFromWorld(light),
+                light,
+                depth,
+                w_min_map);
+  if (!map_from_world.ok()) return map_from_world.status();
+  matrix.map_from_world = *map_from_world;
   matrix.figures.samples = summary.counts;
   if (inputs.samples != nullptr && options.compute_statistics) {
     matrix.figures.footprint = ComputeFootprintStatistics(map_from_normalized, *inputs.samples);

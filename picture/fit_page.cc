@@ -85,7 +85,7 @@ std::vector<ReceiverRole> RolesOfReceivers(const Readback& readback,
 
 absl::StatusOr<Row> MakeRow(const Surfaces& surfaces,
                             const std::vector<Eigen::Vector3d>& receivers,
-                            const Comparison& light,
+                            const FitComparison& light,
                             MapSize map,
                             const SampleOptions& options) {
   const Readback& readback = surfaces.readback;
@@ -136,7 +136,7 @@ std::string GainText(const Figures& before, const Figures& after, absl::string_v
                       name);
 }
 
-std::string Verdict(const Comparison& light) {
+std::string Verdict(const FitComparison& light) {
   const Figures& final = light.final->figures;
   std::string text = light.focused.ok()
                          ? absl::StrCat("wrong pixels foretold: ",
@@ -179,7 +179,7 @@ class Page {
   }
 
   void DrawRow(const Readback& readback,
-               const Comparison& light,
+               const FitComparison& light,
                const Row& row,
                MapSize map,
                const std::string& final_label) {
@@ -283,7 +283,7 @@ class Page {
 }  // namespace
 
 absl::StatusOr<Canvas> DrawPicture(const Surfaces& surfaces,
-                                   const std::vector<Comparison>& lights,
+                                   const std::vector<FitComparison>& lights,
                                    MapSize map,
                                    const PictureOptions& options,
                                    const Typeface& typeface) {
@@ -294,7 +294,7 @@ absl::StatusOr<Canvas> DrawPicture(const Surfaces& surfaces,
   std::vector<Row> rows;
   std::vector<std::vector<std::string>> messages;
   int height = kTitleHeight + kLegendHeight;
-  for (const Comparison& light : lights) {
+  for (const FitComparison& light : lights) {
     absl::StatusOr<Row> row = MakeRow(surfaces, *receivers, light, map, options.samples);
     if (!row.ok()) return row.status();
     rows.push_back(*std::move(row));

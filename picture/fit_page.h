@@ -27,7 +27,7 @@ struct PictureOptions {
 };
 
 absl::StatusOr<Canvas> DrawPicture(const Surfaces& surfaces,
-                                   const std::vector<Comparison>& lights,
+                                   const std::vector<FitComparison>& lights,
                                    MapSize map,
                                    const PictureOptions& options,
                                    const Typeface& typeface);

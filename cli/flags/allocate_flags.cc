@@ -12,7 +12,7 @@
 #include "base/suggest.h"
 #include "cli/flags/choices.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 namespace {
 
 constexpr char kInputGroup[] = "Input";
@@ -250,4 +250,4 @@ absl::StatusOr<std::pair<std::string, double>> ParseWeight(const std::string& te
   return std::make_pair(text.substr(0, equals), weight);
 }
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

@@ -19,7 +19,7 @@ namespace CLI {
 class App;
 }
 
-namespace lightfit {
+namespace lightfit::cli {
 
 struct AllocateFlags {
   FitFlags fit;  // the read-back or summaries, the lights, the method, the output
@@ -48,4 +48,4 @@ std::string ToleranceText(const Tolerance& tolerance);
 // "sun=2": a name and a number above 0.
 absl::StatusOr<std::pair<std::string, double>> ParseWeight(const std::string& text);
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

@@ -1,6 +1,6 @@
 #include "cli/flags/choices.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 
 const Words<Search>& SearchWords() {
   static const auto& words = *new Words<Search>{{"focused", Search::kFocused},
@@ -51,4 +51,4 @@ const Words<ClipConvention>& ClipWords() {
   return words;
 }
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

@@ -11,7 +11,7 @@
 #include "geometry/clip.h"
 #include "optimizer/fit_options.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 
 template <typename Value>
 using Words = std::vector<std::pair<std::string, Value>>;
@@ -39,4 +39,4 @@ std::string WordFor(const Words<Value>& words, Value wanted) {
   return "?";
 }
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

@@ -14,7 +14,7 @@
 #include "absl/strings/str_split.h"
 #include "jobs/compare/rows.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 namespace {
 
 constexpr int64_t kMaxTexels = int64_t{1} << 28;  // 16384 x 16384: two gigabytes of depth
@@ -232,4 +232,4 @@ PixelSize DefaultReadbackSize(PixelSize screen) {
           std::max(1, static_cast<int>(std::lround(kSide / stretch)))};
 }
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

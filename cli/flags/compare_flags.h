@@ -20,7 +20,7 @@ namespace CLI {
 class App;
 }
 
-namespace lightfit {
+namespace lightfit::cli {
 
 // --matrix NAME=FILE.
 struct MatrixFlag {
@@ -69,4 +69,4 @@ absl::StatusOr<MatrixFlag> ParseMatrixFlag(const std::string& text);
 // As many pixels as 180x180 in the screen's ratio of width to height.
 PixelSize DefaultReadbackSize(PixelSize screen);
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

@@ -11,7 +11,7 @@
 #include "cli/flags/choices.h"
 #include "geometry/map_size.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 namespace {
 
 constexpr char kInputGroup[] = "Input";
@@ -295,4 +295,4 @@ absl::StatusOr<MapSize> ParseMapSize(const std::string& text) {
   return map;
 }
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

@@ -19,7 +19,7 @@ namespace CLI {
 class App;
 }
 
-namespace lightfit {
+namespace lightfit::cli {
 
 struct FitFlags {
   std::string readback_path;               // or:
@@ -72,4 +72,4 @@ void CheckSource(const CLI::App& app,
 // "1024x512"; both at least 1 and at most 65536.
 absl::StatusOr<MapSize> ParseMapSize(const std::string& text);
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

@@ -10,7 +10,7 @@
 #include "io/camera_file.h"
 #include "optimizer/readback/readback.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 
 absl::StatusOr<std::vector<Light>> ChooseLights(const std::vector<Light>& lights,
                                                 const std::vector<std::string>& only) {
@@ -78,4 +78,4 @@ absl::StatusOr<FitInputs> ReadFitInputs(const FitFlags& flags) {
   return inputs;
 }
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

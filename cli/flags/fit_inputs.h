@@ -10,7 +10,7 @@
 #include "geometry/light.h"
 #include "io/readback_exr.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 
 struct FitInputs {
   std::vector<Light>
@@ -29,4 +29,4 @@ absl::StatusOr<ReadbackExrOptions> ReadbackOptionsOf(const FitFlags& flags);
 absl::StatusOr<std::vector<Light>> ChooseLights(const std::vector<Light>& lights,
                                                 const std::vector<std::string>& only);
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

@@ -7,7 +7,7 @@
 #include "io/lights_file.h"
 #include "wire/light_proto.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 
 void DeclareLightFlags(CLI::App* app, LightFlags* flags, const std::string& group) {
   app->add_option("--lights", flags->path, "JSON file with the lights")
@@ -55,4 +55,4 @@ absl::StatusOr<std::vector<Light>> ReadLights(const LightFlags& flags) {
   return lights;
 }
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

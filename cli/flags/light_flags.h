@@ -15,7 +15,7 @@ namespace CLI {
 class App;
 }
 
-namespace lightfit {
+namespace lightfit::cli {
 
 struct LightFlags {
   std::string path;
@@ -29,4 +29,4 @@ void DeclareLightFlags(CLI::App* app, LightFlags* flags, const std::string& grou
 // distinct names, at most kMaxLights.
 absl::StatusOr<std::vector<Light>> ReadLights(const LightFlags& flags);
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

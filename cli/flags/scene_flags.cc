@@ -17,7 +17,7 @@
 #include "render/random_suns.h"
 #include "render/scene_file.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 namespace {
 
 constexpr int kMaxRandomLights = 100'000;
@@ -290,4 +290,4 @@ absl::StatusOr<ViewFlags> ParseView(const std::string& text) {
   return view;
 }
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

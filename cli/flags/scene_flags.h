@@ -22,7 +22,7 @@ namespace CLI {
 class App;
 }
 
-namespace lightfit {
+namespace lightfit::cli {
 
 // A camera in words: "EYE:TARGET[:FOV]".
 struct ViewFlags {
@@ -76,4 +76,4 @@ absl::StatusOr<PixelSize> ParsePixelSize(const std::string& text);
 // "x,y,z:x,y,z" or "x,y,z:x,y,z:fov_deg".
 absl::StatusOr<ViewFlags> ParseView(const std::string& text);
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

@@ -8,7 +8,7 @@
 #include "io/camera_file.h"
 #include "jobs/fit_comparison.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 namespace {
 
 constexpr char kExamples[] =
@@ -177,4 +177,4 @@ absl::StatusOr<ShotJob> MakeShotJob(const ShotFlags& flags) {
   return job;
 }
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

@@ -17,7 +17,7 @@ namespace CLI {
 class App;
 }
 
-namespace lightfit {
+namespace lightfit::cli {
 
 struct ShotFlags {
   std::vector<std::string> inputs;  // as ListFrames() takes them
@@ -48,4 +48,4 @@ TrackerOptions TrackerOptionsOf(const ShotFlags& flags);
 // frame's status.
 absl::StatusOr<ShotJob> MakeShotJob(const ShotFlags& flags);
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

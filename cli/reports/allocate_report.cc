@@ -11,7 +11,7 @@
 #include "cli/flags/allocate_flags.h"
 #include "cli/reports/fit_report.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 namespace {
 
 constexpr char kLegend[] =
@@ -141,4 +141,4 @@ std::string AllocationText(const AllocationReport& report,
                       has_budget ? kBudgetLegend : "");
 }
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

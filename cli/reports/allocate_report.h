@@ -7,7 +7,7 @@
 
 #include "wire/allocation_json.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 
 // `source`: what was read, in one line. `image_scale`: pixels of the final image per pixel of the
 // read-back. Fits without statistics, FitOptions::compute_statistics, are those of summaries. Ends
@@ -16,4 +16,4 @@ std::string AllocationText(const AllocationReport& report,
                            const std::string& source,
                            double image_scale);
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

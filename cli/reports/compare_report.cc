@@ -8,7 +8,7 @@
 #include "base/number.h"
 #include "base/table.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 namespace {
 
 constexpr char kPixelLegend[] =
@@ -294,4 +294,4 @@ std::string CompareCsv(absl::Span<const LightComparison> lights) {
   return csv;
 }
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

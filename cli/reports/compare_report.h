@@ -10,7 +10,7 @@
 #include "jobs/compare/rows.h"
 #include "jobs/compare/totals.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 
 // What is above the tables.
 struct CompareHeading {
@@ -30,4 +30,4 @@ std::string CompareReportText(const CompareHeading& heading,
 // A line of names, then one line for each light and method. Empty fields where there is no figure.
 std::string CompareCsv(absl::Span<const LightComparison> lights);
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

@@ -6,7 +6,7 @@
 #include "base/table.h"
 #include "cli/flags/choices.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 namespace {
 
 constexpr char kNoMatrix[] = "no matrix, see below";
@@ -15,22 +15,23 @@ constexpr char kLegend[] =
     "\nWrong: shadow pixels that will be wrong, foretold, of all pixels of the image, with the\n"
     "nearest texel and no fault of the bias. Fewer than: how many times fewer the final map has.\n"
     "Footprint: how far one texel reaches on the screen at the shadow edges, in read-back pixels;\n"
-    "below 1 is finer. Figures are over the shadow-edge pixels that a fit takes by default, whatever\n"
+    "below 1 is finer. Figures are over the shadow-edge pixels that a fit takes by default, "
+    "whatever\n"
     "this one took; the table below counts those it took. Time: the final fit of that light.\n"
     "Focused: the usual map around all that is visible. Published: Chong and Gortler's Algorithm "
     "1.\n";
 
 std::string RatioText(const absl::StatusOr<JudgedMatrix>& before, const Figures& after) {
   if (!before.ok() || !(after.wrong_share.value_or(0.0) > 0.0)) return "-";
-  return absl::StrCat(
-      FigureText(before->figures.wrong_share.value_or(0.0) / *after.wrong_share), "x");
+  return absl::StrCat(FigureText(before->figures.wrong_share.value_or(0.0) / *after.wrong_share),
+                      "x");
 }
 
 std::string WrongText(const absl::StatusOr<JudgedMatrix>& map) {
   return map.ok() ? PercentText(map->figures.wrong_share.value_or(0.0)) : "-";
 }
 
-Table FigureTable(const std::vector<Comparison>& comparisons) {
+Table FigureTable(const std::vector<FitComparison>& comparisons) {
   Table table;
   table.AddColumn("", "light");
   table.AddColumn("wrong, % of the image", "focused");
@@ -43,7 +44,7 @@ Table FigureTable(const std::vector<Comparison>& comparisons) {
   table.AddColumn("99 % footprint", "focused");
   table.AddColumn("99 % footprint", "final");
   table.AddColumn("time", "ms");
-  for (const Comparison& comparison : comparisons) {
+  for (const FitComparison& comparison : comparisons) {
     if (!comparison.final.ok()) {
       table.AddRow({comparison.light.name, kNoMatrix});
       continue;
@@ -65,7 +66,7 @@ Table FigureTable(const std::vector<Comparison>& comparisons) {
   return table;
 }
 
-Table SampleTable(const std::vector<Comparison>& comparisons) {
+Table SampleTable(const std::vector<FitComparison>& comparisons) {
   Table table;
   table.AddColumn("", "light");
   table.AddColumn("shadow-edge pixels", "found");
@@ -74,7 +75,7 @@ Table SampleTable(const std::vector<Comparison>& comparisons) {
   table.AddColumn("rejected", "facing away");
   table.AddColumn("rejected", "edge-on");
   table.AddColumn("rejected", "background");
-  for (const Comparison& comparison : comparisons) {
+  for (const FitComparison& comparison : comparisons) {
     if (!comparison.final.ok()) {
       table.AddRow({comparison.light.name, kNoMatrix});
       continue;
@@ -114,7 +115,7 @@ std::string FitReportText(const std::string& source,
                           const Readback& readback,
                           MapSize map,
                           const FitOptions& options,
-                          const std::vector<Comparison>& comparisons) {
+                          const std::vector<FitComparison>& comparisons) {
   return absl::StrCat(absl::StrFormat("%s: %d x %d pixels; map %d x %d texels\nFinal: %s\n\n",
                                       source,
                                       readback.width(),
@@ -128,4 +129,4 @@ std::string FitReportText(const std::string& source,
                       kLegend);
 }
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

@@ -8,14 +8,14 @@
 
 #include "jobs/fit_comparison.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 
 // `source` names the read-back. Ends in a newline.
 std::string FitReportText(const std::string& source,
                           const Readback& readback,
                           MapSize map,
                           const FitOptions& options,
-                          const std::vector<Comparison>& comparisons);
+                          const std::vector<FitComparison>& comparisons);
 
 // "global search, parallelogram, l2 metric": the choices in the command line's words.
 std::string MethodText(const FitOptions& options);
@@ -23,4 +23,4 @@ std::string MethodText(const FitOptions& options);
 // "global search, l1-edge": as much of it as fits over a picture.
 std::string ShortMethodText(const FitOptions& options);
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

@@ -12,7 +12,7 @@
 #include "cli/reports/fit_report.h"
 #include "jobs/shot/totals.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 namespace {
 
 constexpr char kLegend[] =
@@ -187,4 +187,4 @@ std::vector<std::string> ShotErrors(const ShotContext& context) {
   return errors;
 }
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

@@ -8,7 +8,7 @@
 
 #include "jobs/shot/context.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 
 // Ends in a newline.
 std::string ShotReportText(const ShotContext& context);
@@ -17,4 +17,4 @@ std::string ShotReportText(const ShotContext& context);
 // frames of a mode: the frames, and why in the first of them.
 std::vector<std::string> ShotErrors(const ShotContext& context);
 
-}  // namespace lightfit
+}  // namespace lightfit::cli

@@ -9,6 +9,7 @@
 #include "absl/strings/str_join.h"
 #include "base/parallel.h"
 #include "base/version.h"
+#include "optimizer/fit.h"
 #include "wire/camera_proto.h"
 #include "wire/light_proto.h"
 #include "wire/matrix_proto.h"
@@ -76,7 +77,8 @@ std::string FrameText(const ShotFrame& frame) {
 
 // What goes into summaries.
 std::string SummarySettings(const ShotJob& job) {
-  std::string text = absl::StrCat(kVersion, "\n", JsonOrError(FitOptionsToProto(job.fit())));
+  std::string text = absl::StrCat(
+      kVersion, " fits ", kFitRevision, "\n", JsonOrError(FitOptionsToProto(job.fit())));
   for (const Light& light : job.lights) {
     absl::StrAppend(&text, JsonOrError(LightToProto(light)), light.shadow_bit, "\n");
   }

@@ -187,7 +187,7 @@ absl::StatusOr<Summary> SummaryOfTotal(const SummaryTotal& total) {
   if (total.hull.empty()) {
     return absl::FailedPreconditionError(absl::StrFormat(
         "light \"%s\": none of its %d frames shows any of its shadow, so there is nothing to fit. "
-        "Leave the light out of the shot, or cover all receivers (--cover receivers)",
+        "Leave the light out of the shot, or cover all receivers (options.cover = kReceivers)",
         total.light.name,
         total.num_frames));
   }

@@ -6,8 +6,8 @@
 #include <optional>
 #include <utility>
 
-#include "base/stop.h"
 #include "base/scratch.h"
+#include "base/stop.h"
 #include "geometry/convex_hull.h"
 #include "geometry/hull_interior.h"
 
@@ -41,7 +41,7 @@ class HullBuilder {
     return (frame_from_screen_ * screen).hnormalized();
   }
 
-  // Looks into a tile unless its box is inside the hull. Also where InsideTest does not recognise
+  // Looks into a tile unless its box is inside the hull. Also where HullInterior does not recognise
   // it.
   void Visit(size_t level, size_t index) {
     const TileGrid& grid = covered_.tiles.grids[level];
@@ -84,7 +84,7 @@ class HullBuilder {
   const Matrix34d frame_from_screen_;
   ScratchVector<Eigen::Vector2d> pending_;  // receivers that may lie outside hull_
   Polygon hull_;
-  std::optional<InsideTest> inside_;  // of hull_
+  std::optional<HullInterior> inside_;  // of hull_
 };
 
 }  // namespace

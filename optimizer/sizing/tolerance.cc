@@ -30,8 +30,7 @@ using TryFunction = std::function<absl::StatusOr<ToleranceMap>(MapSize)>;
 // Footprints of all samples, read-back pixels per texel; 0 behind the light's plane w = 0, where a
 // lit neighbour of what is covered may lie: look-ups there find light. Of no use once `stop` says
 // so.
-ScratchVector<double> FootprintsOf(const Eigen::Matrix3d& map_from_ray,
-                                   const Samples& samples) {
+ScratchVector<double> FootprintsOf(const Eigen::Matrix3d& map_from_ray, const Samples& samples) {
   ScratchVector<double> footprints(samples.size(), 0.0);
   for (size_t i = 0; i < samples.size() && !IsStopped(i); ++i) {
     if (!(map_from_ray.row(2).dot(samples.At(i).X) > 0.0)) continue;
@@ -241,14 +240,12 @@ absl::StatusOr<ToleranceMap> MeetTolerance(const LightView& view,
       const absl::StatusOr<Eigen::Matrix3d> map_from_ray =
           MapFromNormalized(*matrix, light, summary.cover);
       if (!map_from_ray.ok()) return map_from_ray.status();
-      const ScratchVector<double> footprints =
-          FootprintsOf(*map_from_ray, view.samples);
+      const ScratchVector<double> footprints = FootprintsOf(*map_from_ray, view.samples);
       const double figure = tolerance.kind == Tolerance::Kind::kRms
                                 ? RmsOf(footprints, view.samples.weight)
                                 : FigureOf(tolerance.kind, footprints);
       if (options.compute_statistics) {
-        matrix->figures.footprint =
-            ComputeFootprintStatistics(*map_from_ray, view.samples);
+        matrix->figures.footprint = ComputeFootprintStatistics(*map_from_ray, view.samples);
         // Its rank is rounded there, where a promise counts up.
         if (tolerance.kind == Tolerance::Kind::kP99) matrix->figures.footprint.p99 = figure;
       }
@@ -277,7 +274,7 @@ absl::StatusOr<ToleranceMap> MeetTolerance(const Summary& summary,
   if (tolerance.kind != Tolerance::Kind::kRms || options.metric != Metric::kL2) {
     return absl::InvalidArgumentError(
         "tolerance: a summary can serve the root mean square only, and only when it was summed in "
-        "squared footprints (Metric::kL2, --metric l2); for other tolerances give the read-back");
+        "squared footprints (options.metric = kL2); for other tolerances give the read-back");
   }
   const auto try_size = [&](MapSize map) -> absl::StatusOr<ToleranceMap> {
     absl::StatusOr<LightMatrix> matrix = FitMatrix({light, summary}, map, options);

@@ -72,7 +72,7 @@ TEST(OneMeaning, OfTheFocusedMapsFootprintInFitAndCompare) {
     EXPECT_EQ(first[8], second[8]);  // 99 %
     EXPECT_EQ(first[1], second[1]);  // wrong pixels
     for (const v1::MethodComparison& method : light.methods()) {
-      if (method.name() != "mine") continue;
+      if (method.method() != "mine") continue;
       EXPECT_EQ(FigureText(method.footprint().rms()), first[6]);
       EXPECT_EQ(FigureText(method.footprint().p99()), first[8]);
       ++num_compared;

@@ -22,7 +22,7 @@ bool IsInside(const Polygon& polygon, const Eigen::Vector2d& point) {
 }
 
 // Never true outside, and true for all but a thin rim inside.
-TEST(InsideTest, TrueOnlyInsideAndMissesOnlyTheRim) {
+TEST(HullInterior, TrueOnlyInsideAndMissesOnlyTheRim) {
   Random random(161);
   for (int repeat = 0; repeat < 200; ++repeat) {
     std::vector<Eigen::Vector2d> points;
@@ -33,7 +33,7 @@ TEST(InsideTest, TrueOnlyInsideAndMissesOnlyTheRim) {
     }
     const Polygon polygon = ConvexHull(points);
     const Eigen::Vector2d centre = Centroid(polygon);
-    const InsideTest inside(polygon);
+    const HullInterior inside(polygon);
     for (int i = 0; i < 500; ++i) {
       const Eigen::Vector2d point(random.Uniform(-1.1, 1.1), flatness * random.Uniform(-1.1, 1.1));
       if (inside(point)) {
@@ -47,16 +47,16 @@ TEST(InsideTest, TrueOnlyInsideAndMissesOnlyTheRim) {
   }
 }
 
-TEST(InsideTest, NothingIsInsideWithoutArea) {
+TEST(HullInterior, NothingIsInsideWithoutArea) {
   for (const Polygon& polygon : {Polygon{}, Polygon{{1.0, 2.0}}, Polygon{{0.0, 0.0}, {2.0, 0.0}}}) {
-    EXPECT_FALSE(InsideTest(polygon)({1.0, 0.0}));
-    EXPECT_FALSE(InsideTest(polygon)({1.0, 2.0}));
+    EXPECT_FALSE(HullInterior(polygon)({1.0, 0.0}));
+    EXPECT_FALSE(HullInterior(polygon)({1.0, 2.0}));
   }
 }
 
-TEST(InsideTest, NanIsNowhere) {
+TEST(HullInterior, NanIsNowhere) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const InsideTest inside({{-1.0, -1.0}, {1.0, -1.0}, {0.0, 2.0}});
+  const HullInterior inside({{-1.0, -1.0}, {1.0, -1.0}, {0.0, 2.0}});
   EXPECT_TRUE(inside({0.0, 0.0}));
   EXPECT_FALSE(inside({nan, 0.0}));
   EXPECT_FALSE(inside({0.0, nan}));

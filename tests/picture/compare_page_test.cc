@@ -20,6 +20,9 @@
 namespace lightfit {
 namespace {
 
+using cli::CompareCsv;
+using cli::CompareHeading;
+using cli::CompareReportText;
 using ::testing::HasSubstr;
 using ::testing::Not;
 

@@ -9,7 +9,7 @@
 #include "render/sight.h"
 #include "tests/testing/matchers.h"
 
-namespace lightfit {
+namespace lightfit::cli {
 namespace {
 
 using ::testing::HasSubstr;
@@ -146,4 +146,4 @@ TEST(CheckSight, RefusesEyesThatSeeNothingOrTouchASurface) {
 }
 
 }  // namespace
-}  // namespace lightfit
+}  // namespace lightfit::cli

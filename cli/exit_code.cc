@@ -1,0 +1,45 @@
+#include "cli/exit_code.h"
+
+#include <cstdio>
+#include <string>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_replace.h"
+
+namespace lightfit::cli {
+namespace {
+
+// The library knows options of its own and no command line.
+std::string WithFlags(absl::string_view message) {
+  return absl::StrReplaceAll(message,
+                             {{"options.search = kFocused", "--search focused"},
+                              {"options.cover = kReceivers", "--cover receivers"},
+                              {"options.metric = kL2", "--metric l2"}});
+}
+
+}  // namespace
+
+void PrintError(absl::string_view message) {
+  std::fprintf(stderr, "lightfit: error: %s\n", WithFlags(message).c_str());
+}
+
+void PrintWarning(absl::string_view message) {
+  std::fprintf(stderr, "lightfit: warning: %s\n", WithFlags(message).c_str());
+}
+
+int Fail(ExitCode code, const absl::Status& status) {
+  PrintError(status.message());
+  return code;
+}
+
+void PrintFailedLight(absl::string_view what,
+                      absl::string_view light_name,
+                      const absl::Status& status) {
+  std::string message(status.message());
+  const std::string name = absl::StrCat("light \"", light_name, "\"");
+  if (!absl::StrContains(message, name)) message = absl::StrCat(name, ": ", message);
+  PrintError(absl::StrCat("no ", what, " for ", message));
+}
+
+}  // namespace lightfit::cli
