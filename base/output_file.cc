@@ -41,20 +41,4 @@ absl::Status CheckWritable(absl::string_view flag, const std::string& path) {
   return absl::OkStatus();
 }
 
-absl::Status WriteThroughTemporary(const std::string& path,
-                                   const std::function<absl::Status(const std::string&)>& write) {
-  // The process number keeps two runs with one output apart; the last rename wins, whole.
-  const std::string temporary = absl::StrCat(path, ".", getpid(), ".part");
-  absl::Status status = write(temporary);
-  std::error_code error;
-  if (status.ok()) {
-    std::filesystem::rename(temporary, path, error);
-    if (!error) return absl::OkStatus();
-    status = absl::UnknownError(
-        absl::StrCat("cannot rename ", temporary, " to ", path, ": ", error.message()));
-  }
-  std::filesystem::remove(temporary, error);
-  return status;
-}
-
 }  // namespace lightfit

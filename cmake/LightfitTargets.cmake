@@ -113,10 +113,13 @@ function(lightfit_tests folder)
   if(ARG_PROGRAMS)
     add_dependencies(${target} ${ARG_PROGRAMS})
   endif()
+  # What is tested is optimised; the tests themselves need not be, and compile in half the time.
+  target_compile_options(${target} PRIVATE -O1)
   if(LIGHTFIT_WITH_PCH AND NOT ARG_OWN_FLAGS)
     if(NOT TARGET test_pch)
       add_library(test_pch OBJECT ${PROJECT_SOURCE_DIR}/cmake/empty.cc)
       target_link_libraries(test_pch PRIVATE lightfit::testing lightfit_settings GTest::gmock)
+      target_compile_options(test_pch PRIVATE -O1)
       target_precompile_headers(test_pch PRIVATE
         <gmock/gmock.h> <gtest/gtest.h> ${LIGHTFIT_PCH_HEADERS})
     endif()

@@ -4,7 +4,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <csignal>
+#include <string>
+
+#include "base/text_file.h"
 #include "tests/testing/process.h"
 
 namespace lightfit {
@@ -16,11 +21,7 @@ using ::testing::HasSubstr;
 TEST(OutputFile, ReplacesTheOldFile) {
   const TemporaryFolder folder;
   WriteFile(folder.Path("a"), "old and longer");
-  const absl::Status status =
-      WriteThroughTemporary(folder.Path("a"), [](const std::string& temporary) {
-        WriteFile(temporary, "new");
-        return absl::OkStatus();
-      });
+  const absl::Status status = WriteTextFileAtomically(folder.Path("a"), "new");
   ASSERT_TRUE(status.ok()) << status;
   EXPECT_EQ(ReadFile(folder.Path("a")), "new");
   EXPECT_THAT(folder.Files(), ElementsAre("a"));
@@ -29,19 +30,23 @@ TEST(OutputFile, ReplacesTheOldFile) {
 TEST(OutputFile, AFailureLeavesTheOldFileAndNothingElse) {
   const TemporaryFolder folder;
   WriteFile(folder.Path("a"), "old");
-  const absl::Status status =
-      WriteThroughTemporary(folder.Path("a"), [](const std::string& temporary) {
-        WriteFile(temporary, "half of it");
-        return absl::UnknownError("out of ink");
-      });
-  EXPECT_THAT(std::string(status.message()), HasSubstr("out of ink"));
+  // No room for more than a kilobyte, until the end of the test.
+  rlimit before = {};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit little = {1024, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &little), 0);
+  const absl::Status status = WriteTextFileAtomically(folder.Path("a"), std::string(100'000, 'x'));
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_FALSE(status.ok());
+  EXPECT_THAT(std::string(status.message()), HasSubstr(folder.Path("a")));
   EXPECT_EQ(ReadFile(folder.Path("a")), "old");
   EXPECT_THAT(folder.Files(), ElementsAre("a"));
 }
 
 TEST(OutputFile, AFolderThatRefusesFilesIsAnError) {
-  const auto write_nothing = [](const std::string&) { return absl::OkStatus(); };
-  EXPECT_FALSE(WriteThroughTemporary("/proc/lightfit", write_nothing).ok());
+  EXPECT_FALSE(WriteTextFileAtomically("/proc/lightfit", "").ok());
 }
 
 TEST(OutputFile, ChecksTheFolderBeforehand) {

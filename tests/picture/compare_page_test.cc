@@ -1,5 +1,4 @@
-// Totals, tables and comma-separated values of hand-made comparisons, and the pieces of the
-// picture.
+// Totals of hand-made comparisons, and the pieces of their picture.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,55 +6,16 @@
 #include <cmath>
 #include <random>
 
-#include "absl/strings/str_split.h"
 #include "base/progress.h"
-#include "cli/reports/compare_report.h"
 #include "jobs/compare/totals.h"
-#include "optimizer/figures/figures.h"
 #include "picture/bar_chart.h"
 #include "picture/compare_choice.h"
 #include "picture/shadow_panel.h"
 #include "picture/theme.h"
+#include "tests/jobs/compare/compared_lights.h"
 
 namespace lightfit {
 namespace {
-
-using cli::CompareCsv;
-using cli::CompareHeading;
-using cli::CompareReportText;
-using ::testing::HasSubstr;
-using ::testing::Not;
-
-ComparedMap Row(const std::string& name, int64_t ideal, int64_t practical, double energy) {
-  ComparedMap map;
-  map.name = name;
-  map.wrong = WrongPixels();
-  map.wrong->ideal = ideal;
-  map.wrong->practical = practical;
-  map.figures = Figures();
-  map.figures->energy = energy;
-  return map;
-}
-
-ComparedMap FailedRow(const std::string& name, const std::string& reason) {
-  ComparedMap map;
-  map.name = name;
-  map.status = absl::FailedPreconditionError(reason);
-  return map;
-}
-
-LightComparison OneLight(const std::string& name, std::vector<ComparedMap> maps) {
-  LightComparison light;
-  light.light = Light::Directional(name, {0, -1, 0.5});
-  light.maps = std::move(maps);
-  return light;
-}
-
-std::vector<LightComparison> ThreeLights() {
-  return {OneLight("a", {Row("focused", 30, 40, 8), Row("lightfit", 10, 20, 2)}),
-          OneLight("b", {Row("focused", 5, 20, 2), Row("lightfit", 9, 20, 4)}),
-          OneLight("c", {FailedRow("focused", "no, \"never\""), Row("lightfit", 100, 100, 1)})};
-}
 
 TEST(Totals, CountTheLightsThatBothHave) {
   const std::vector<MethodTotals> totals = TotalsOf(ThreeLights());
@@ -84,95 +44,6 @@ TEST(Totals, HaveNoRatioToNothing) {
   EXPECT_FALSE(totals[0].mean_energy_ratio.has_value());
   EXPECT_EQ(totals[1].num_failed, 1);
   EXPECT_TRUE(TotalsOf({}).empty());
-}
-
-CompareHeading Heading() {
-  CompareHeading heading;
-  heading.source = "scene.glb";
-  heading.screen_width = heading.screen_height = 750;
-  heading.map = {400, 400};
-  return heading;
-}
-
-TEST(CompareReport, OneLightHasATableOfItsMethods) {
-  const std::string text = CompareReportText(Heading(), {ThreeLights()[0]}, false);
-  EXPECT_THAT(text, HasSubstr("scene.glb: screen 750 x 750 pixels"));
-  EXPECT_THAT(text, HasSubstr("focused        30         40    3.00x      2.00x"));
-  EXPECT_THAT(text, HasSubstr("lightfit       10         20    1.00x      1.00x"));
-  EXPECT_THAT(text, Not(HasSubstr("lights\n")));
-}
-
-TEST(CompareReport, ManyLightsHaveOneTableOrMore) {
-  const std::vector<LightComparison> lights = ThreeLights();
-  const std::string totals = CompareReportText(Heading(), lights, false);
-  EXPECT_THAT(totals, HasSubstr("3 lights"));
-  EXPECT_THAT(totals, HasSubstr("geometric mean"));
-  EXPECT_THAT(totals, Not(HasSubstr("never")));
-  const std::string all = CompareReportText(Heading(), lights, true);
-  EXPECT_THAT(all, HasSubstr("focused: no, \"never\""));
-  EXPECT_THAT(all, HasSubstr("3 lights"));
-}
-
-TEST(CompareReport, SaysTheSameWordsOnce) {
-  const std::vector<LightComparison> lights = {OneLight(
-      "a", {FailedRow("psm", "no way"), FailedRow("tsm", "no way"), Row("lightfit", 1, 1, 1)})};
-  EXPECT_THAT(CompareReportText(Heading(), lights, false), HasSubstr("\npsm, tsm: no way\n"));
-}
-
-TEST(CompareReport, CrawlHasColumnsOnlyWhereItIsMeasured) {
-  std::vector<LightComparison> lights = {ThreeLights()[0]};
-  EXPECT_THAT(CompareReportText(Heading(), lights, false), Not(HasSubstr("crawl")));
-  MapCrawl crawl;
-  crawl.points.num_points = 900;
-  crawl.points.phase_drift_texels = 0.25;
-  crawl.flicker = Flicker{200, 3, 4};
-  lights[0].maps[0].crawl = crawl;
-  CompareHeading heading = Heading();
-  heading.next = "frame 7 of cameras.json";
-  const std::string text = CompareReportText(heading, lights, false);
-  EXPECT_THAT(text, HasSubstr("crawl: to the next frame, frame 7 of cameras.json\n"));
-  EXPECT_THAT(text, HasSubstr(" texels  pixels  % flips\n"));
-  EXPECT_THAT(text, HasSubstr("   0.250       -     1.50\n"));  // no edge in view
-  EXPECT_THAT(text, HasSubstr("       -       -        -\n"));  // lightfit has none
-  EXPECT_THAT(text, HasSubstr("Flips: "));
-
-  lights.push_back(lights[0]);
-  lights[0].maps[1].crawl = lights[1].maps[1].crawl = crawl;
-  EXPECT_THAT(CompareReportText(heading, lights, false), HasSubstr("   0.250       -     1.50"));
-
-  heading.screen_width = 0;
-  const std::string readback = CompareReportText(heading, lights, false);
-  EXPECT_THAT(readback, HasSubstr(" texels  pixels"));
-  EXPECT_THAT(readback, Not(HasSubstr("lips")));
-  EXPECT_THAT(CompareCsv(lights), HasSubstr(",0.25,0,0,200,3,4,"));
-}
-
-// Splits a line at the commas outside quotes.
-std::vector<std::string> Fields(const std::string& line) {
-  std::vector<std::string> fields(1);
-  bool quoted = false;
-  for (const char c : line) {
-    if (c == '"') quoted = !quoted;
-    if (c == ',' && !quoted) {
-      fields.emplace_back();
-    } else {
-      fields.back().push_back(c);
-    }
-  }
-  return fields;
-}
-
-TEST(CompareCsv, HasALineForEachLightAndMethod) {
-  const std::string csv = CompareCsv(ThreeLights());
-  const std::vector<std::string> lines = absl::StrSplit(csv, '\n');
-  ASSERT_EQ(lines.size(), 1u + 6u + 1u);
-  const std::vector<std::string> names = Fields(lines[0]);
-  for (size_t i = 1; i + 1 < lines.size(); ++i) {
-    EXPECT_EQ(Fields(lines[i]).size(), names.size()) << lines[i];
-  }
-  EXPECT_EQ(lines[1].substr(0, 34), "a,sun,0,-1,0.5,focused,ok,30,40,0,");
-  EXPECT_THAT(lines[5], HasSubstr("c,sun,0,-1,0.5,focused,failed,,,,,,,,,,,"));
-  EXPECT_THAT(lines[5], HasSubstr("\"no, \"\"never\"\"\""));
 }
 
 TEST(DurationText, ReadsAsPeopleSayIt) {
