@@ -61,11 +61,12 @@ class UnaryCall final : public grpc::ServerUnaryReactor {
 
   void Compute() {
     absl::StatusOr<Result> result = answer_(*request_, call_.context());
+    const absl::Status status = result.status();
     if (result.ok()) {
       NoteResult(*result, &call_);
       *result_ = *std::move(result);
     }
-    Finish(call_.Finish(result.status()));  // may be the end of this object
+    Finish(call_.Finish(status));  // may be the end of this object
   }
 
   Call call_;

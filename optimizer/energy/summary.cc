@@ -61,10 +61,25 @@ EnergyGradient EnergyTensor::EnergyAndGradient(const Eigen::Matrix3d& map_from_r
   return result;
 }
 
+Eigen::Matrix<double, 6, 6> SymmetricCongruence(const Eigen::Matrix3d& m) {
+  constexpr int kRow[6] = {0, 0, 0, 1, 1, 2};
+  constexpr int kColumn[6] = {0, 1, 2, 1, 2, 2};
+  Eigen::Matrix<double, 6, 6> congruence;
+  for (int i = 0; i < 6; ++i) {
+    const int a = kRow[i], b = kColumn[i];
+    for (int j = 0; j < 6; ++j) {
+      const int c = kRow[j], d = kColumn[j];
+      congruence(i, j) = m(a, c) * m(b, d);
+      if (c != d) congruence(i, j) += m(a, d) * m(b, c);
+    }
+  }
+  return congruence;
+}
+
 EnergyTensor EnergyTensor::Transformed(const Eigen::Matrix3d& new_from_old) const {
   const Eigen::Matrix3d contragredient = new_from_old.inverse().transpose();
-  return EnergyTensor(SymmetricCongruence<double>(new_from_old) * entries_ *
-                      SymmetricCongruence<double>(contragredient).transpose());
+  return EnergyTensor(SymmetricCongruence(new_from_old) * entries_ *
+                      SymmetricCongruence(contragredient).transpose());
 }
 
 Eigen::Matrix<double, 9, 9> EnergyTensor::AsQuadraticForm() const {

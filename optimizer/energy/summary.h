@@ -23,8 +23,7 @@ SymmetricVector ToSymmetricVector(const Eigen::Matrix3d& symmetric);
 Eigen::Matrix3d FromSymmetricVector(const SymmetricVector& entries);
 
 // The 6x6 matrix that maps the entries of a symmetric A to those of M A M'.
-template <typename Scalar>
-Eigen::Matrix<Scalar, 6, 6> SymmetricCongruence(const Eigen::Matrix<Scalar, 3, 3>& m);
+Eigen::Matrix<double, 6, 6> SymmetricCongruence(const Eigen::Matrix3d& m);
 
 // T_(ab)(cd) = sum of weight X_a X_b G_cd: rows run over (ab), columns over (cd).   math.md (6)
 class EnergyTensor {
@@ -69,21 +68,5 @@ struct Summary {
 Summary SummarizeSamples(const Samples& samples,
                          const RayCover& cover,
                          const MetricWeights& metric);
-
-template <typename Scalar>
-Eigen::Matrix<Scalar, 6, 6> SymmetricCongruence(const Eigen::Matrix<Scalar, 3, 3>& m) {
-  constexpr int kRow[6] = {0, 0, 0, 1, 1, 2};
-  constexpr int kColumn[6] = {0, 1, 2, 1, 2, 2};
-  Eigen::Matrix<Scalar, 6, 6> congruence;
-  for (int i = 0; i < 6; ++i) {
-    const int a = kRow[i], b = kColumn[i];
-    for (int j = 0; j < 6; ++j) {
-      const int c = kRow[j], d = kColumn[j];
-      congruence(i, j) = m(a, c) * m(b, d);
-      if (c != d) congruence(i, j) += m(a, d) * m(b, c);
-    }
-  }
-  return congruence;
-}
 
 }  // namespace lightfit

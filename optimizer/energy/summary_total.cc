@@ -4,8 +4,8 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <boost/multiprecision/cpp_bin_float.hpp>
-#include <boost/multiprecision/eigen.hpp>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -21,8 +21,52 @@ namespace {
 // Fine enough for what three doubles hold, and for lights at a million times the scene's size.
 using Wide = boost::multiprecision::number<boost::multiprecision::cpp_bin_float_100::backend_type,
                                            boost::multiprecision::et_off>;
-using WideMatrix3 = Eigen::Matrix<Wide, 3, 3>;
-using WideMatrix6 = Eigen::Matrix<Wide, 6, 6>;
+
+// Plain loops over arrays: Eigen on such numbers took longer to compile than any other source.
+template <size_t n>
+using WideMatrix = std::array<std::array<Wide, n>, n>;
+
+template <size_t n>
+WideMatrix<n> ToWide(const Eigen::Matrix<double, static_cast<int>(n), static_cast<int>(n)>& m) {
+  WideMatrix<n> wide;
+  for (size_t i = 0; i < n; ++i) {
+    for (size_t j = 0; j < n; ++j) wide[i][j] = m(static_cast<int>(i), static_cast<int>(j));
+  }
+  return wide;
+}
+
+WideMatrix<3> Inverse(const WideMatrix<3>& m) {
+  WideMatrix<3> adjugate;
+  for (size_t i = 0; i < 3; ++i) {
+    for (size_t j = 0; j < 3; ++j) {
+      const size_t r = (j + 1) % 3, s = (j + 2) % 3, c = (i + 1) % 3, d = (i + 2) % 3;
+      adjugate[i][j] = m[r][c] * m[s][d] - m[r][d] * m[s][c];
+    }
+  }
+  const Wide determinant =
+      m[0][0] * adjugate[0][0] + m[0][1] * adjugate[1][0] + m[0][2] * adjugate[2][0];
+  for (auto& row : adjugate) {
+    for (Wide& entry : row) entry /= determinant;
+  }
+  return adjugate;
+}
+
+// SymmetricCongruence() of optimizer/energy/summary.h, with `transposed` that of the transposed.
+WideMatrix<6> Congruence(const WideMatrix<3>& m, bool transposed) {
+  constexpr size_t kRow[6] = {0, 0, 0, 1, 1, 2};
+  constexpr size_t kColumn[6] = {0, 1, 2, 1, 2, 2};
+  const auto at = [&](size_t i, size_t j) { return transposed ? m[j][i] : m[i][j]; };
+  WideMatrix<6> congruence;
+  for (size_t i = 0; i < 6; ++i) {
+    const size_t a = kRow[i], b = kColumn[i];
+    for (size_t j = 0; j < 6; ++j) {
+      const size_t c = kRow[j], d = kColumn[j];
+      congruence[i][j] = at(a, c) * at(b, d);
+      if (c != d) congruence[i][j] += at(a, d) * at(b, c);
+    }
+  }
+  return congruence;
+}
 
 // The nearest sum of so many doubles.
 void AddWide(Wide value, int num_parts, ExactSum* sum) {
@@ -49,11 +93,23 @@ int NumParts(const Eigen::Matrix3d& normalized_from_ray) {
 
 // The tensor in coordinates X' = N X, math.md 4: N acts on the first pair of indices, its
 // contragredient on the second.
-WideMatrix6 Transformed(const WideMatrix6& tensor, const WideMatrix3& new_from_old) {
-  const WideMatrix3 contragredient = new_from_old.inverse().transpose();
-  const WideMatrix6 on_rays = SymmetricCongruence(new_from_old);
-  const WideMatrix6 on_metric = SymmetricCongruence(contragredient);
-  return on_rays * tensor * on_metric.transpose();
+WideMatrix<6> Transformed(const WideMatrix<6>& tensor,
+                          const WideMatrix<3>& new_from_old,
+                          const WideMatrix<3>& old_from_new) {
+  const WideMatrix<6> on_rays = Congruence(new_from_old, /*transposed=*/false);
+  const WideMatrix<6> on_metric = Congruence(old_from_new, /*transposed=*/true);
+  WideMatrix<6> half = {}, result = {};
+  for (size_t i = 0; i < 6; ++i) {
+    for (size_t j = 0; j < 6; ++j) {
+      for (size_t k = 0; k < 6; ++k) half[i][j] += on_rays[i][k] * tensor[k][j];
+    }
+  }
+  for (size_t i = 0; i < 6; ++i) {
+    for (size_t j = 0; j < 6; ++j) {
+      for (size_t k = 0; k < 6; ++k) result[i][j] += half[i][k] * on_metric[j][k];
+    }
+  }
+  return result;
 }
 
 // Whether samples may sum to it: no energy of theirs is negative, math.md (7).
@@ -119,19 +175,25 @@ SummaryTotal TotalOf(const Summary& summary, const Light& light) {
   total.metric = summary.metric;
   total.is_l1 = summary.footprint_sum > 0.0;
   total.num_frames = 1;
-  const WideMatrix3 ray_from_normalized = cover.normalized_from_ray.cast<Wide>().inverse();
-  const WideMatrix6 tensor =
-      Transformed(summary.tensor.entries().cast<Wide>(), ray_from_normalized);
+  const WideMatrix<3> normalized_from_ray = ToWide<3>(cover.normalized_from_ray);
+  const WideMatrix<3> ray_from_normalized = Inverse(normalized_from_ray);
+  const WideMatrix<6> tensor =
+      Transformed(ToWide<6>(summary.tensor.entries()), ray_from_normalized, normalized_from_ray);
   const int num_parts = NumParts(cover.normalized_from_ray);
-  for (int i = 0; i < 36; ++i) AddWide(tensor(i / 6, i % 6), num_parts, &total.tensor[i]);
+  for (int i = 0; i < 36; ++i) AddWide(tensor[i / 6][i % 6], num_parts, &total.tensor[i]);
   total.total_weight.Add(summary.total_weight);
   total.footprint_sum.Add(summary.footprint_sum);
   total.counts = summary.counts;
   if (cover.nothing_shadowed) return total;
   const bool is_point = light.kind == Light::Kind::kPoint;
+  Eigen::Matrix3d rounded_ray_from_normalized;
+  for (int i = 0; i < 9; ++i) {
+    rounded_ray_from_normalized(i / 3, i % 3) =
+        ray_from_normalized[i / 3][i % 3].convert_to<double>();
+  }
   std::vector<Eigen::Vector3d> rays;
   for (const Eigen::Vector2d& vertex : cover.hull) {
-    const Eigen::Vector3d ray = ray_from_normalized.cast<double>() * vertex.homogeneous();
+    const Eigen::Vector3d ray = rounded_ray_from_normalized * vertex.homogeneous();
     rays.push_back(is_point ? ray.normalized() : Eigen::Vector3d(ray / ray.z()));
   }
   std::optional<std::vector<Eigen::Vector3d>> hull = ExtremeRays(std::move(rays));
@@ -200,10 +262,15 @@ absl::StatusOr<Summary> SummaryOfTotal(const SummaryTotal& total) {
   summary.total_weight = total.total_weight.Value();
   summary.footprint_sum = total.footprint_sum.Value();
   summary.counts = total.counts;
-  WideMatrix6 tensor;
-  for (int i = 0; i < 36; ++i) tensor(i / 6, i % 6) = ToWide(total.tensor[i]);
-  summary.tensor =
-      EnergyTensor(Transformed(tensor, cover->normalized_from_ray.cast<Wide>()).cast<double>());
+  WideMatrix<6> tensor;
+  for (int i = 0; i < 36; ++i) tensor[i / 6][i % 6] = ToWide(total.tensor[i]);
+  const WideMatrix<3> normalized_from_ray = ToWide<3>(cover->normalized_from_ray);
+  tensor = Transformed(tensor, normalized_from_ray, Inverse(normalized_from_ray));
+  Eigen::Matrix<double, 6, 6> entries;
+  for (int i = 0; i < 36; ++i) {
+    entries(i / 6, i % 6) = tensor[i / 6][i % 6].convert_to<double>();
+  }
+  summary.tensor = EnergyTensor(entries);
   if (!IsSumOfSamples(summary.tensor)) {
     return absl::InvalidArgumentError(
         absl::StrFormat("light \"%s\": tensor: no samples sum to this, the summary is damaged: "
