@@ -70,8 +70,11 @@ absl::StatusOr<QualityCase> MeasureQuality(const std::string& input,
       return absl::InternalError(absl::StrCat(method.name, ": ", matrix.status().message()));
     }
     const MatrixQuality quality = check->Measure(matrix->map_from_world, map);
-    result.results.push_back(
-        {method.name, quality.energy, matrix->figures.energy, quality.outside_texels, matrix->search.evaluations});
+    result.results.push_back({method.name,
+                              quality.energy,
+                              matrix->figures.energy,
+                              quality.outside_texels,
+                              matrix->search.evaluations});
     if (method.name == "default") energy_start = matrix->search.energy_start;
   }
   const double least = BruteForceFit(*summary, map, QualityObjective(), brute_force).energy;

@@ -1,11 +1,14 @@
 // bench/stop.cc : how soon work ends that is asked to stop.
 //
 // In:   boxes on a floor at three sizes, --lights lights; from a second thread a StopScope
-//       is asked to stop at a random moment of every call. Wants a processor for each of the two threads.
+//       is asked to stop at a random moment of every call. Wants a processor for each of the two
+//       threads.
 // Out:  milliseconds from the request to the return of the call: median, 99 % and largest, and when
 //       in the call the largest was asked for; how much of it the thread was computing, as it would
 //       on an idle processor; beside the duration of the whole call. A call that answers with
 //       anything but CancelledError after it was asked, unless it was done, ends the program.
+#include "base/stop.h"
+
 #include <pthread.h>
 #include <time.h>
 
@@ -25,7 +28,6 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "base/stop.h"
 #include "base/table.h"
 #include "bench/inputs.h"
 #include "optimizer/evaluate.h"
@@ -179,9 +181,7 @@ void MeasureSize(const Arguments& arguments, MapSize size, StopTable* table) {
   const Eigen::Matrix4d map_from_world = FitLight(input.View(), light, kMap)->map_from_world;
   const std::string suffix = absl::StrCat(", ", size.width, "x", size.height);
   const auto measure = [&](const std::string& name, const FitOptions& options, const auto& call) {
-    table->Measure(name + suffix, [&]() {
-      return call(options);
-    });
+    table->Measure(name + suffix, [&]() { return call(options); });
   };
   const auto fit_light = [&](const FitOptions& options) {
     return FitLight(input.View(), light, kMap, options).status();

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "base/stop.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "base/stop.h"
 #include "calls/message_text.h"
 #include "calls/pixel_buffer.h"
 #include "calls/request_fields.h"

@@ -34,8 +34,8 @@ std::vector<LightFit> FitRequestLights(const std::vector<RequestLight>& lights,
     fit.light = light.light;
     fit.matrix = light.status.ok() ? std::move(matrices[next++]) : light.status;
     if (!foretells || !fit.matrix.ok()) continue;
-    const absl::StatusOr<double> wrong_share = ForetellWrongShare(
-        readback, light.light, fit.matrix->map_from_world, map, options.samples);
+    const absl::StatusOr<double> wrong_share =
+        ForetellWrongShare(readback, light.light, fit.matrix->map_from_world, map, options.samples);
     if (wrong_share.ok()) fit.wrong_share = *wrong_share;
   }
   return fits;
@@ -71,8 +71,7 @@ absl::StatusOr<v1::FitResult> AnswerFit(const v1::FitRequest& request,
   report.options = *options;
   report.map = *map;
   report.clip = *clip;
-  report.lights =
-      FitRequestLights(*lights, readback, *map, *options, request.foretell_wrong());
+  report.lights = FitRequestLights(*lights, readback, *map, *options, request.foretell_wrong());
   if (StopRequested()) return StoppedError();
   return FinishedResult(report, *lights);
 }

@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/stop.h"
 #include "absl/strings/str_format.h"
+#include "base/stop.h"
 #include "calls/finished_result.h"
 #include "calls/request_fields.h"
 #include "calls/request_lights.h"
@@ -142,8 +142,7 @@ v1::TrackResult TrackSession::Update(const v1::TrackFrame& frame,
   const StopScope stop_scope(stop);
   v1::TrackResult answer;
   answer.set_number(frame.number());
-  absl::StatusOr<v1::FitResult> result =
-      pixels.ok() ? Track(frame, *pixels) : pixels.status();
+  absl::StatusOr<v1::FitResult> result = pixels.ok() ? Track(frame, *pixels) : pixels.status();
   SetStatus(result.status(), answer.mutable_status());
   if (result.ok()) *answer.mutable_result() = *std::move(result);
   return answer;

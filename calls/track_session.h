@@ -35,8 +35,7 @@ class TrackSession {
                          const std::stop_token& stop);
 
  private:
-  absl::StatusOr<v1::FitResult> Track(const v1::TrackFrame& frame,
-                                      const Readback& pixels);
+  absl::StatusOr<v1::FitResult> Track(const v1::TrackFrame& frame, const Readback& pixels);
 
   // Once, when the first frame says what the lights are.
   absl::Status TakeGivenState(const std::vector<Light>& lights);

@@ -3,8 +3,8 @@
 #include <Eigen/Geometry>
 #include <utility>
 
-#include "base/stop.h"
 #include "absl/strings/str_format.h"
+#include "base/stop.h"
 
 namespace lightfit {
 

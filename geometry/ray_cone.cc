@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "base/stop.h"
 #include "base/scratch.h"
+#include "base/stop.h"
 #include "geometry/convex_hull.h"
 #include "geometry/enclosing_rectangle.h"
 

@@ -18,8 +18,8 @@ absl::StatusOr<Figures> EvaluateMatrix(const LightView& view,
   const absl::StatusOr<Eigen::Matrix3d> map_from_ray = MapFromRay(map_from_world, light);
   if (!map_from_ray.ok()) return map_from_ray.status();
   const Eigen::Matrix3d map_from_normalized = *map_from_ray * view.normalized_from_ray().inverse();
-  Figures figures = MeasureFigures(
-      view.samples, map_from_normalized, options.metric, options.along_edge_share);
+  Figures figures =
+      MeasureFigures(view.samples, map_from_normalized, options.metric, options.along_edge_share);
   if (absl::Status status = CheckStop(light); !status.ok()) return status;
   const int64_t num_behind = figures.footprint.num_behind;
   if (num_behind > 0 && num_behind == figures.samples.used) {
@@ -32,8 +32,8 @@ absl::StatusOr<Figures> EvaluateMatrix(const LightView& view,
     return absl::FailedPreconditionError(
         absl::StrFormat("light \"%s\": the matrix is singular at the samples", light.name));
   }
-  const absl::StatusOr<double> wrong_share = ForetellWrongShare(
-      view.surfaces->readback, light, map_from_world, map, options.samples);
+  const absl::StatusOr<double> wrong_share =
+      ForetellWrongShare(view.surfaces->readback, light, map_from_world, map, options.samples);
   if (!wrong_share.ok()) return wrong_share.status();
   figures.wrong_share = *wrong_share;
   return figures;

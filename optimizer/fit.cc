@@ -103,9 +103,8 @@ absl::StatusOr<LightMatrix> FitLight(const LightView& view,
 absl::StatusOr<Summary> Summarize(const Readback& readback,
                                   const Light& light,
                                   const FitOptions& options) {
-  return AskView(readback, light, options, [&](const LightView& view) {
-    return Summarize(view, options);
-  });
+  return AskView(
+      readback, light, options, [&](const LightView& view) { return Summarize(view, options); });
 }
 
 absl::StatusOr<Summary> Summarize(const LightView& view, const FitOptions& options) {
@@ -119,8 +118,7 @@ absl::StatusOr<Summary> Summarize(const LightView& view, const FitOptions& optio
     const absl::StatusOr<SearchResult> result =
         SearchAxis({light, summary, &view.samples, view.surfaces}, kAnySquare, options);
     if (!result.ok()) return result.status();
-    summary =
-        WeighedIn(result->fit.map_from_ray, view.samples, *view.cover, summary.metric);
+    summary = WeighedIn(result->fit.map_from_ray, view.samples, *view.cover, summary.metric);
   }
   if (absl::Status status = CheckStop(light); !status.ok()) return status;
   return summary;
@@ -152,8 +150,7 @@ absl::StatusOr<Summary> SummarizeInMap(const LightView& view,
   if (absl::Status status = CheckStop(light); !status.ok()) return status;
   samples.counts.used = static_cast<int64_t>(samples.size());
   if (samples.size() == 0) return SummarizeSamples(samples, *view.cover, summary.metric);
-  summary =
-      WeighedIn(map_from_normalized, std::move(samples), *view.cover, summary.metric);
+  summary = WeighedIn(map_from_normalized, std::move(samples), *view.cover, summary.metric);
   if (absl::Status status = CheckStop(light); !status.ok()) return status;
   return summary;
 }

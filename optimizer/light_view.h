@@ -40,8 +40,8 @@ struct LightView {
 // Here and below: CancelledError once a StopScope says so.
 
 // Of `options` count `samples`, `cover` and whether `metric` needs edge normals; whoever takes the
-// view wants the same. InvalidArgument for a light that cannot be used, or samples that the surfaces
-// were not found for (FindSurfaces()).
+// view wants the same. InvalidArgument for a light that cannot be used, or samples that the
+// surfaces were not found for (FindSurfaces()).
 absl::StatusOr<LightView> ViewLight(const Surfaces& surfaces,
                                     const Light& light,
                                     const FitOptions& options);

@@ -5,10 +5,10 @@
 #include <map>
 #include <string>
 
+#include "geometry/clip.h"
 #include "optimizer/tracking/async_optimizer.h"
 #include "render/readback_image.h"
 #include "render/scene_generator.h"
-#include "geometry/clip.h"
 
 int main() {  // NOLINT(bugprone-exception-escape): scene and cameras are good ones
   const lightfit::RayCaster engine =

@@ -187,9 +187,8 @@ LightComparison CompareMaps(const CompareStage& stage,
   }
   const LitStage frame = Lit(stage, light);
   const absl::StatusOr<LightView> view =
-      frame.surfaces->ok()
-          ? ViewLight(**frame.surfaces, frame.light, FigureOptions(options.fit))
-          : absl::StatusOr<LightView>(frame.surfaces->status());
+      frame.surfaces->ok() ? ViewLight(**frame.surfaces, frame.light, FigureOptions(options.fit))
+                           : absl::StatusOr<LightView>(frame.surfaces->status());
   if (view.ok()) comparison.samples = view->samples.counts;
 
   RowMaker rows(frame, view, options, &comparison);

@@ -184,7 +184,8 @@ void JudgeFrames(const TrackedMatrices& matrices, int begin, int end, ShotContex
     });
     FrameBefore frame_before;
     if (i > 0 && before.ok()) frame_before = {&*before, MapsOf(matrices)};
-    std::vector<absl::StatusOr<ShotFit>> fits = JudgeFits(job, file, surfaces, readable, frame_before);
+    std::vector<absl::StatusOr<ShotFit>> fits =
+        JudgeFits(job, file, surfaces, readable, frame_before);
     for (absl::StatusOr<ShotFit>& fit : fits) {
       if (!fit.ok()) continue;
       LightMatrix& matrix = fit->tracked.matrix;

@@ -134,8 +134,7 @@ namespace lightfit::internal {
 
 HWY_EXPORT(AccumulateSimd);
 
-Eigen::Matrix<double, 6, 6> AccumulateTensor(const Samples& samples,
-                                             const MetricWeights& metric) {
+Eigen::Matrix<double, 6, 6> AccumulateTensor(const Samples& samples, const MetricWeights& metric) {
   constexpr size_t kLanes = LIGHTFIT_SUMMARY_LANES;
   alignas(64) double sums[36 * kLanes] = {};
   const bool edges = metric.across_edge != 0.0 && samples.has_edge_normals();

@@ -14,7 +14,6 @@ namespace lightfit::internal {
 //
 // Sums run in four interleaved lanes on every processor, without fused multiply-add, so that the
 // same samples give the same bits everywhere. Of no use once a StopScope says so.
-Eigen::Matrix<double, 6, 6> AccumulateTensor(const Samples& samples,
-                                             const MetricWeights& metric);
+Eigen::Matrix<double, 6, 6> AccumulateTensor(const Samples& samples, const MetricWeights& metric);
 
 }  // namespace lightfit::internal

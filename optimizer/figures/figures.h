@@ -17,8 +17,8 @@
 namespace lightfit {
 
 struct Figures {
-  // Sum over the samples in the metric: of squared footprints, (read-back pixels per texel)^2, or of
-  // footprints for the L1 metrics.   math.md (3)
+  // Sum over the samples in the metric: of squared footprints, (read-back pixels per texel)^2, or
+  // of footprints for the L1 metrics.   math.md (3)
   double energy = 0.0;
   FootprintStatistics footprint;  // and how many samples lie behind the map, in no figure
   SampleCounts samples;           // which samples all of this is over
@@ -28,8 +28,8 @@ struct Figures {
   std::optional<double> wrong_share;
 };
 
-// Energy and footprints of `map_from_ray` at the samples in front of it; all 0 where there are none.
-// Of no use once a StopScope says so.
+// Energy and footprints of `map_from_ray` at the samples in front of it; all 0 where there are
+// none. Of no use once a StopScope says so.
 Figures MeasureFigures(const Samples& samples,
                        const Eigen::Matrix3d& map_from_ray,
                        Metric metric,

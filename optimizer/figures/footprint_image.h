@@ -9,8 +9,8 @@
 
 #include "absl/status/statusor.h"
 #include "geometry/light.h"
-#include "optimizer/readback/sample_options.h"
 #include "optimizer/readback/readback.h"
+#include "optimizer/readback/sample_options.h"
 #include "optimizer/readback/surfaces.h"
 
 namespace lightfit {

@@ -142,8 +142,7 @@ absl::Status MeasureEdge(const MappedFrame& before,
   const absl::StatusOr<PixelFootprints> footprints =
       PixelFootprints::Create(after.readback, light, after.map_from_world, options);
   if (!footprints.ok()) return footprints.status();
-  const Samples samples =
-      SelectSamples(
+  const Samples samples = SelectSamples(
       surfaces, light, options, Eigen::Matrix3d::Identity(), /*with_edge_normals=*/true);
   const size_t step = (samples.size() + kMaxPoints - 1) / kMaxPoints;
   double sum = 0.0;

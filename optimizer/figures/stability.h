@@ -15,8 +15,8 @@
 #include "absl/status/statusor.h"
 #include "geometry/light.h"
 #include "geometry/map_size.h"
-#include "optimizer/readback/sample_options.h"
 #include "optimizer/readback/readback.h"
+#include "optimizer/readback/sample_options.h"
 #include "optimizer/readback/surfaces.h"
 
 namespace lightfit {

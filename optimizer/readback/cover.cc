@@ -27,8 +27,7 @@ absl::Status FlatError(const Light& light) {
 }
 
 // An axis that has all boxes of the grid in front of it.
-std::optional<Eigen::Vector3d> AxisOfBoxes(const TileGrid& grid,
-                                           const Matrix34d& ray_from_screen) {
+std::optional<Eigen::Vector3d> AxisOfBoxes(const TileGrid& grid, const Matrix34d& ray_from_screen) {
   ScratchVector<Eigen::Vector3d> rays;
   rays.reserve(8 * grid.tiles.size());
   ForEachTile(grid, [&](const DepthTile& tile) {
@@ -37,8 +36,7 @@ std::optional<Eigen::Vector3d> AxisOfBoxes(const TileGrid& grid,
   return FeasibleAxis(rays);
 }
 
-Eigen::Vector3d MeanRay(const TileGrid& grid,
-                        const Matrix34d& ray_from_screen) {
+Eigen::Vector3d MeanRay(const TileGrid& grid, const Matrix34d& ray_from_screen) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   ForEachTile(grid, [&](const DepthTile& tile) {
     const Eigen::Vector4d middle(0.5 * (tile.x_begin + tile.x_end),
@@ -52,8 +50,7 @@ Eigen::Vector3d MeanRay(const TileGrid& grid,
 
 // The boxes that hold rays close to the covered ones, in four times their square, and perhaps some
 // more: all but those whose corners lie beyond one and the same side of it.
-TileGrid BoxesAlong(const TileGrid& grid,
-                    const Matrix34d& normalized_from_screen) {
+TileGrid BoxesAlong(const TileGrid& grid, const Matrix34d& normalized_from_screen) {
   constexpr double kCloseBy = 4.0;
   TileGrid close;
   ForEachTile(grid, [&](const DepthTile& tile) {
@@ -92,8 +89,7 @@ DepthRange RangeOverBox(const DepthTile& tile, const DepthOnScreen& depth, Depth
   return range;
 }
 
-DepthRange RangeOverBoxes(const TileGrid& grid,
-                          const DepthOnScreen& depth) {
+DepthRange RangeOverBoxes(const TileGrid& grid, const DepthOnScreen& depth) {
   DepthRange range = kNoDepth;
   ForEachTile(grid, [&](const DepthTile& tile) { range = RangeOverBox(tile, depth, range); });
   return range;
@@ -185,14 +181,12 @@ absl::StatusOr<RayCover> CoverReceivers(const Surfaces& receivers,
   const std::optional<Eigen::Matrix3d> normalized = NormalizeRays(frame_from_ray, &cover.hull);
   if (!normalized.has_value()) {
     // A single shadowed pixel, or a row of them, has no area, which is as good as no shadow.
-    return covers_all ? FlatError(light)
-                      : CoverReceivers(receivers, light, Cover::kReceivers);
+    return covers_all ? FlatError(light) : CoverReceivers(receivers, light, Cover::kReceivers);
   }
   cover.normalized_from_ray = *normalized;
   if (!covers_all) {
     // What is lit may land in the map too, behind all that is shadowed.
-    const TileGrid close =
-        BoxesAlong(receivers.tiles.grids[0], *normalized * ray_from_screen);
+    const TileGrid close = BoxesAlong(receivers.tiles.grids[0], *normalized * ray_from_screen);
     cover.depth.far = std::max(cover.depth.far, RangeOverBoxes(close, depth).far);
     if (absl::Status status = CheckStop(light); !status.ok()) return status;
   }

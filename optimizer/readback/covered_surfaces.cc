@@ -50,9 +50,8 @@ ScratchVector<Eigen::Vector4d> OneReceiverPerTile(const CoveredSurfaces& covered
     return Eigen::Vector4d::Zero();  // not reached: the tile has a receiver
   };
   ScratchVector<Eigen::Vector4d> found;
-  ForEachTile(covered.tiles.grids[grid], [&](const DepthTile& tile) {
-    found.push_back(first_receiver(tile));
-  });
+  ForEachTile(covered.tiles.grids[grid],
+              [&](const DepthTile& tile) { found.push_back(first_receiver(tile)); });
   return found;
 }
 

@@ -127,8 +127,7 @@ Samples SelectSamples(const Surfaces& surfaces,
   for (const BoundaryPixel& pixel : surfaces.boundary) {
     if (IsStopped(facing.size())) return samples;
     const bool is_candidate = (pixel.lights & bit) != 0 && IsWanted(pixel, options);
-    facing.push_back(is_candidate ? FacingOf(pixel, light, options)
-                                  : Facing::kTowards);
+    facing.push_back(is_candidate ? FacingOf(pixel, light, options) : Facing::kTowards);
   }
   const Terminators terminators(surfaces, bit, facing);
   for (size_t i = 0; i < surfaces.boundary.size() && !IsStopped(i); ++i) {
@@ -138,8 +137,7 @@ Samples SelectSamples(const Surfaces& surfaces,
       ++samples.counts.discontinuity;
       continue;
     }
-    if (facing[i] == Facing::kAway ||
-        (!options.use_terminators && terminators.Has(pixel))) {
+    if (facing[i] == Facing::kAway || (!options.use_terminators && terminators.Has(pixel))) {
       ++samples.counts.facing_away;
       continue;
     }
@@ -163,8 +161,7 @@ Samples SelectSamples(const Surfaces& surfaces,
   return samples;
 }
 
-Samples SamplesInFront(const Samples& samples,
-                       const Eigen::RowVector3d& axis) {
+Samples SamplesInFront(const Samples& samples, const Eigen::RowVector3d& axis) {
   Samples front;
   front.ray_from_screen = samples.ray_from_screen;
   front.counts = samples.counts;

@@ -41,9 +41,9 @@ struct Samples {
   void AppendFrom(const Samples& other, size_t i);
 };
 
-// The light's share of the boundary, as `options` want it: those that face the light, are not edge-on
-// to it or to the eye. `normalized_from_ray` acts on RayFromWorld(light); the identity keeps light space.
-// Here and below: of no use once a StopScope says so.
+// The light's share of the boundary, as `options` want it: those that face the light, are not
+// edge-on to it or to the eye. `normalized_from_ray` acts on RayFromWorld(light); the identity
+// keeps light space. Here and below: of no use once a StopScope says so.
 Samples SelectSamples(const Surfaces& surfaces,
                       const Light& light,
                       const SampleOptions& options,
@@ -51,7 +51,6 @@ Samples SelectSamples(const Surfaces& surfaces,
                       bool with_edge_normals);
 
 // Those with w = p.X > 0, in the order they had. `counts` are as they were.
-Samples SamplesInFront(const Samples& samples,
-                       const Eigen::RowVector3d& axis);
+Samples SamplesInFront(const Samples& samples, const Eigen::RowVector3d& axis);
 
 }  // namespace lightfit

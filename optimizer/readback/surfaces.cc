@@ -105,8 +105,8 @@ Eigen::Vector3d SurfaceNormal(const Eigen::Matrix4d& screen_from_world,
 }
 
 absl::StatusOr<Surfaces> FindSurfaces(const Readback& readback,
-                                        uint32_t light_mask,
-                                        const SampleOptions& options) {
+                                      uint32_t light_mask,
+                                      const SampleOptions& options) {
   num_surfaces_found.fetch_add(1, std::memory_order_relaxed);
   if (absl::Status status = ValidateReadback(readback); !status.ok()) return status;
   SampleOptions with_outlines = options;

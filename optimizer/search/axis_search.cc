@@ -82,8 +82,7 @@ absl::StatusOr<SearchResult> SearchSquares(const SearchInputs& inputs,
       return result;
     }
     case Search::kGlobal:
-      return GlobalSearch(
-          summary, *evaluator, *start, options.grid_directions, options.refiner);
+      return GlobalSearch(summary, *evaluator, *start, options.grid_directions, options.refiner);
   }
   return absl::InvalidArgumentError("options.search: no such search");
 }
@@ -115,8 +114,7 @@ absl::StatusOr<SearchResult> StartOfL1(const SearchInputs& inputs,
   absl::StatusOr<SearchResult> start = SearchSquares(inputs, inputs.summary, map, focused);
   if (!start.ok()) return start.status();
   AffineFit& fit = start->fit;
-  fit.energy =
-      WeightsForL1(*inputs.samples, inputs.summary.metric, fit.map_from_ray).footprint_sum;
+  fit.energy = WeightsForL1(*inputs.samples, inputs.summary.metric, fit.map_from_ray).footprint_sum;
   start->report.energy_start = fit.energy;
   start->report.trace = {{"start", start->report.evaluations, fit.energy}};
   return start;
@@ -160,8 +158,7 @@ absl::StatusOr<SearchResult> SearchL1(const SearchInputs& inputs,
       report.evaluations += current.report.evaluations;
     }
     if (StopRequested()) break;
-    L1Weights l1 =
-        WeightsForL1(*inputs.samples, inputs.summary.metric, current.fit.map_from_ray);
+    L1Weights l1 = WeightsForL1(*inputs.samples, inputs.summary.metric, current.fit.map_from_ray);
     report.trace.push_back(
         {round == 0 ? "search" : "reweight", report.evaluations, l1.footprint_sum});
     SearchResult candidate = current;

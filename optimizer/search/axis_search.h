@@ -12,8 +12,8 @@
 #include "optimizer/readback/samples.h"
 #include "optimizer/readback/surfaces.h"
 #include "optimizer/search/affine.h"
-#include "optimizer/search/search_result.h"
 #include "optimizer/search/search_options.h"
+#include "optimizer/search/search_result.h"
 
 namespace lightfit {
 

@@ -7,8 +7,8 @@
 #include <optional>
 #include <utility>
 
-#include "base/stop.h"
 #include "base/scratch.h"
+#include "base/stop.h"
 #include "optimizer/search/polish.h"
 #include "optimizer/search/refine.h"
 

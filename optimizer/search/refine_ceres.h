@@ -5,8 +5,8 @@
 // Out:  better parameters, Ceres' brief report.
 //
 // Apart, as it alone links Ceres, and with it SuiteSparse, BLAS and glog; in builds without it
-// (LIGHTFIT_WITH_CERES=OFF) HasCeres() is false and ValidateSearchOptions() refuses kCeres. Its twin
-// Refiner::kTinySolver is a header of Ceres that needs none of them.
+// (LIGHTFIT_WITH_CERES=OFF) HasCeres() is false and ValidateSearchOptions() refuses kCeres. Its
+// twin Refiner::kTinySolver is a header of Ceres that needs none of them.
 #pragma once
 
 #include <Eigen/Core>

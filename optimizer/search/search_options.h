@@ -3,7 +3,6 @@
 // Every choice of the search for a map, in the words of docs/mathematics.md.
 #pragma once
 
-
 #include "absl/status/status.h"
 #include "optimizer/energy/metric.h"
 

@@ -65,7 +65,8 @@ absl::StatusOr<Allocation> AllocateBudget(absl::Span<const AllocationLight> ligh
                                           const MapSizeRules& rules,
                                           const FitOptions& options = {});
 
-// The stations of it. What they return once a StopScope says so is valid, but nothing like the best.
+// The stations of it. What they return once a StopScope says so is valid, but nothing like the
+// best.
 
 // S_l within [least, most] that sum to `budget`, or to less where all are at their most.
 // math.md (16). `factors` are c_l k_l.

@@ -64,9 +64,7 @@ absl::StatusOr<MapShapes> FindMapShapes(const Summary& summary,
 
 // The sizes that keep the rules and are worth their texels, each with MapShapes::Energy times
 // `weight` as its cost.
-std::vector<RatedSize> RateSizes(const MapShapes& shapes,
-                                 double weight,
-                                 const MapSizeRules& rules);
+std::vector<RatedSize> RateSizes(const MapShapes& shapes, double weight, const MapSizeRules& rules);
 
 // Summarize() with maps of any aspect in mind: for the L1 metrics the samples weigh what they do in
 // the light's best map of all aspects, found by weighing and fitting in turn, where Summarize()

@@ -11,6 +11,7 @@
 
 #include "optimizer/evaluate.h"
 #include "optimizer/fit.h"
+#include "optimizer/light_matrix.h"
 #include "optimizer/sizing/allocation.h"
 #include "optimizer/sizing/map_shapes.h"
 #include "optimizer/sizing/tolerance.h"
@@ -18,7 +19,6 @@
 #include "tests/io/summary_examples.h"
 #include "tests/testing/test_scene.h"
 #include "wire/options_proto.h"
-#include "optimizer/light_matrix.h"
 
 namespace lightfit {
 namespace {

@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "optimizer/evaluate.h"
+#include "optimizer/figures/figures.h"
 #include "optimizer/fit.h"
 #include "tests/calls/requests.h"
 #include "tests/io/summary_examples.h"
 #include "tests/testing/test_scene.h"
 #include "wire/matrix_proto.h"
 #include "wire/options_proto.h"
-#include "optimizer/figures/figures.h"
 
 namespace lightfit {
 namespace {

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "optimizer/fit.h"
+#include "optimizer/light_matrix.h"
 #include "tests/calls/requests.h"
 #include "tests/io/summary_examples.h"
 #include "wire/options_proto.h"
-#include "optimizer/light_matrix.h"
 
 namespace lightfit {
 namespace {

@@ -13,11 +13,11 @@
 #include "io/lights_file.h"
 #include "io/readback_exr.h"
 #include "optimizer/evaluate.h"
+#include "optimizer/figures/figures.h"
 #include "tests/cli/allocations.h"
 #include "tests/cli/examples.h"
 #include "tests/cli/summaries.h"
 #include "tests/testing/process.h"
-#include "optimizer/figures/figures.h"
 
 namespace lightfit {
 namespace {

@@ -14,10 +14,10 @@
 #include "io/readback_exr.h"
 #include "io/summary_file.h"
 #include "optimizer/fit.h"
+#include "optimizer/light_matrix.h"
 #include "tests/cli/examples.h"
 #include "tests/cli/summaries.h"
 #include "tests/testing/process.h"
-#include "optimizer/light_matrix.h"
 
 namespace lightfit {
 namespace {

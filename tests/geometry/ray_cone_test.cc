@@ -1,5 +1,4 @@
 #include "geometry/ray_cone.h"
-#include "base/stop.h"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/stop.h"
 #include "geometry/convex_hull.h"
 #include "tests/testing/matchers.h"
 #include "tests/testing/random_cases.h"

@@ -9,7 +9,6 @@
 
 #include "geometry/clip.h"
 #include "tests/testing/matchers.h"
-#include "geometry/clip.h"
 
 namespace lightfit {
 namespace {

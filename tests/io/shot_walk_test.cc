@@ -20,9 +20,9 @@
 #include "io/readback_exr.h"
 #include "optimizer/energy/summary_total.h"
 #include "optimizer/fit.h"
+#include "optimizer/light_matrix.h"
 #include "optimizer/readback/surfaces.h"
 #include "tests/testing/process.h"
-#include "optimizer/light_matrix.h"
 
 namespace lightfit {
 namespace {

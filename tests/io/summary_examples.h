@@ -19,11 +19,11 @@
 #include "io/readback_exr.h"
 #include "io/summary_file.h"
 #include "optimizer/fit.h"
+#include "optimizer/light_matrix.h"
 #include "tests/io/testing.h"
 #include "tests/testing/matchers.h"
 #include "wire/result_json.h"
 #include "wire/summary_proto.h"
-#include "optimizer/light_matrix.h"
 
 namespace lightfit::testing {
 

@@ -15,8 +15,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "optimizer/fit.h"
-#include "tests/io/summary_examples.h"
 #include "optimizer/light_matrix.h"
+#include "tests/io/summary_examples.h"
 
 namespace lightfit {
 namespace {

@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "geometry/clip.h"
 #include "methods/focused.h"
 #include "methods/lispsm.h"
 #include "methods/plane_optimal.h"
 #include "methods/view_body.h"
 #include "tests/testing/matchers.h"
-#include "geometry/clip.h"
 
 namespace lightfit {
 namespace {

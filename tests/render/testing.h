@@ -14,12 +14,12 @@
 
 #include "geometry/homography.h"
 #include "geometry/light.h"
+#include "geometry/map_size.h"
 #include "render/ray_caster.h"
 #include "render/surface_image.h"
 #include "tests/testing/box_scene.h"
 #include "tests/testing/process.h"
 #include "tests/testing/random_cases.h"
-#include "geometry/map_size.h"
 
 namespace lightfit::testing {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/io/testing.h"
 #include "optimizer/light_matrix.h"
+#include "tests/io/testing.h"
 
 namespace lightfit {
 namespace {

@@ -54,7 +54,7 @@ TEST(SurfacesOnce, ForEachFrameOfAShot) {
     const int64_t before_whole = NumSurfacesFound();
     ASSERT_THAT(RunShot(&whole), IsOk());
     const int64_t num_passes = (NumSurfacesFound() - before_whole) / kNumFrames;
-    EXPECT_GE(num_passes, 2);                // summed up, judged
+    EXPECT_GE(num_passes, 2);               // summed up, judged
     EXPECT_LE(num_passes, 3 + job.rounds);  // and weighed anew in each round
   }
 }
