@@ -33,9 +33,9 @@ RELEASE = ROOT / "build" / "release"
 LINT = ROOT / "build" / "lint"
 NO_ANALYZER = ["--checks=-clang-analyzer-*"]  # on top of .clang-tidy, for tests/
 
-# Precompiled headers are g++'s, which clang cannot read. Without them a source is also seen to
+# Precompiled headers and memory settings are g++'s. Without the former a source is also seen to
 # include what it uses.
-PRECOMPILED = re.compile(r" (-Winvalid-pch|-fpch-preprocess|-include \S+cmake_pch\.hxx)(?= )")
+PRECOMPILED = re.compile(r" (-Winvalid-pch|-fpch-preprocess|--param ggc-\S+|-include \S+cmake_pch\.hxx)(?= )")
 INCLUDE = re.compile(rb'^\s*#\s*include\s+["<]([^">]+)[">]', re.MULTILINE)
 NOISE = re.compile(r"^(\d+ warnings? (generated|treated)|Suppressed \d+ warnings|Use -header-filter)")
 
