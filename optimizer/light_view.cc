@@ -10,7 +10,6 @@
 #include "absl/strings/str_format.h"
 #include "base/stop.h"
 #include "geometry/light_map.h"
-#include "optimizer/energy/l1_weights.h"
 
 namespace lightfit {
 
@@ -181,9 +180,10 @@ absl::StatusOr<LightMatrix> MatrixOfMap(const SearchInputs& inputs,
   if (!matrix.ok()) return matrix;
   if (inputs.summary.counts.used > 0) {
     matrix->figures.energy =
-        IsL1(options.metric) && inputs.samples != nullptr
-            ? WeightsForL1(*inputs.samples, inputs.summary.metric, map_from_normalized)
-                  .footprint_sum
+        inputs.samples != nullptr
+            ? MeasureFigures(
+                  *inputs.samples, map_from_normalized, options.metric, options.along_edge_share)
+                  .energy
             : inputs.summary.tensor.Energy(map_from_normalized);
     matrix->search.energy_start = matrix->figures.energy;
     matrix->search.stop_reason = StopReason::kNoSearch;

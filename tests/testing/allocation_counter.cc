@@ -20,8 +20,17 @@ int64_t NumAllocations() { return num_allocations.load(std::memory_order_relaxed
 
 }  // namespace lightfit::testing
 
-// NOLINTBEGIN(bugprone-reserved-identifier): the names are not ours.
+// g++ says so by a macro, clang by a feature.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define LIGHTFIT_SANITIZED 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define LIGHTFIT_SANITIZED 1
+#endif
+#endif
+
+// NOLINTBEGIN(bugprone-reserved-identifier): the names are not ours.
+#ifdef LIGHTFIT_SANITIZED
 
 // The sanitizers' own heap calls these.
 extern "C" void __sanitizer_malloc_hook(const volatile void* /*memory*/, size_t /*size*/) {

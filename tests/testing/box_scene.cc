@@ -95,10 +95,14 @@ Camera RandomCamera(const BoxScene& scene, uint64_t seed, int width, int height)
   std::mt19937_64 random(seed);
   const double size = scene.floor_half_size;
   while (true) {
-    const Eigen::Vector3d eye(
-        Uniform(random, -size, size), Uniform(random, -size, size), LogUniform(random, 1.0, 8.0));
-    const Eigen::Vector3d target(
-        Uniform(random, -0.5 * size, 0.5 * size), Uniform(random, -0.5 * size, 0.5 * size), 0.5);
+    // One by one: compilers evaluate arguments in an order of their own.
+    Eigen::Vector3d eye, target;
+    eye.z() = LogUniform(random, 1.0, 8.0);
+    eye.y() = Uniform(random, -size, size);
+    eye.x() = Uniform(random, -size, size);
+    target.z() = 0.5;
+    target.y() = Uniform(random, -0.5 * size, 0.5 * size);
+    target.x() = Uniform(random, -0.5 * size, 0.5 * size);
     const double vertical_fov_rad = Uniform(random, 35.0, 65.0) * kPi / 180.0;
     const auto blocks = [&](const Box& box) { return IsNear(eye, box, /*clearance=*/0.2); };
     if ((target - eye).norm() < 0.5 * size ||

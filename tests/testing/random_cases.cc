@@ -12,8 +12,10 @@ Camera CameraAround(Random& random, double size, bool orthographic) {
   const int width = random.Int(48, 640), height = random.Int(48, 480);
   const Eigen::Vector3d eye = size * random.Uniform(1.5, 4.0) * random.UnitVector();
   const Eigen::Vector3d target = random.InCube(0.2 * size);
-  Camera camera =
-      *LookAtCamera(eye, target, random.UnitVector(), random.Uniform(0.4, 1.2), width, height);
+  // One by one: compilers evaluate arguments in an order of their own.
+  const double vertical_fov_rad = random.Uniform(0.4, 1.2);
+  const Eigen::Vector3d up = random.UnitVector();
+  Camera camera = *LookAtCamera(eye, target, up, vertical_fov_rad, width, height);
   camera.screen_from_camera(0, 2) += random.Uniform(-0.2, 0.2) * width;
   camera.screen_from_camera(1, 2) += random.Uniform(-0.2, 0.2) * height;
   if (orthographic) {
@@ -118,7 +120,9 @@ Eigen::Matrix3d RandomMap(Random& random, const Polygon& hull) {
   map_from_ray.row(2) = ab.homogeneous();
   map_from_ray.topLeftCorner<2, 2>() = 300.0 * random.Matrix2(10.0);
   map_from_ray.topRightCorner<2, 1>().setZero();
-  const Eigen::Vector2d centre(random.Uniform(0.0, 1000.0), random.Uniform(0.0, 1000.0));
+  Eigen::Vector2d centre;
+  centre.y() = random.Uniform(0.0, 1000.0);
+  centre.x() = random.Uniform(0.0, 1000.0);
   map_from_ray.topRows<2>() += centre * map_from_ray.row(2);
   return map_from_ray;
 }
