@@ -183,7 +183,7 @@ absl::Status PixelBuffer::Append(const v1::PixelChunk& chunk) {
 absl::Status PixelBuffer::AppendDepth(absl::string_view bytes) {
   if (bytes.empty()) return absl::OkStatus();
   const int64_t value_bytes = BytesOf(header_.depth_format);
-  const absl::Status status =
+  absl::Status status =
       CheckPiece("readback.depth", bytes, value_bytes, num_depth_bytes_, header_.depth_bytes());
   if (!status.ok()) return status;
   num_depth_bytes_ += static_cast<int64_t>(bytes.size());
@@ -208,11 +208,11 @@ absl::Status PixelBuffer::AppendShadowBits(absl::string_view bytes) {
     return absl::InvalidArgumentError(
         "readback.shadow_bits: has pixels beside readback.shadow_planes, want one of them");
   }
-  const absl::Status status = CheckPiece("readback.shadow_bits",
-                                         bytes,
-                                         sizeof(uint32_t),
-                                         num_shadow_bits_bytes_,
-                                         header_.shadow_bits_bytes());
+  absl::Status status = CheckPiece("readback.shadow_bits",
+                                   bytes,
+                                   sizeof(uint32_t),
+                                   num_shadow_bits_bytes_,
+                                   header_.shadow_bits_bytes());
   if (!status.ok()) return status;
   num_shadow_bits_bytes_ += static_cast<int64_t>(bytes.size());
   shadow_bits_.reserve(header_.num_pixels());

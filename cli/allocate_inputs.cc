@@ -18,6 +18,7 @@ namespace {
 absl::StatusOr<std::vector<double>> WeightsOf(const std::map<std::string, double>& weights,
                                               const std::vector<Light>& lights) {
   std::vector<std::string> names;
+  names.reserve(lights.size());
   for (const Light& light : lights) names.push_back(light.name);
   std::vector<double> result(lights.size(), 1.0);
   for (const auto& [name, weight] : weights) {
