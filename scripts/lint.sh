@@ -53,7 +53,7 @@ check_overviews() {
 
 check_scripts() {
   say "shell scripts"
-  shellcheck -x run .ci/run scripts/*.sh || fault "shellcheck is not content"
+  shellcheck -x run .ci/run scripts/*.sh cmake/*.sh || fault "shellcheck is not content"
 }
 
 check_tidy() {

@@ -8,7 +8,6 @@
 // Lawson's weights, so that what is kept is the best and not the last.
 #pragma once
 
-#include <optional>
 #include <utility>
 
 namespace lightfit {
@@ -22,23 +21,24 @@ class BestOfRounds {
   // Keeps `result` if its value is less than that of every round before. Whether it gained; the
   // first always does.
   bool Offer(double value, Result result) {
-    const bool gained = !best_.has_value() || value < (1.0 - least_gain_) * value_;
-    if (!best_.has_value() || value < value_) {
+    const bool gained = is_empty_ || value < (1.0 - least_gain_) * value_;
+    if (is_empty_ || value < value_) {
       value_ = value;
       best_ = std::move(result);
+      is_empty_ = false;
     }
     return gained;
   }
 
   // Require an offer.
-  double value() const { return value_; }
-  const Result& Best() const& { return *best_; }
-  Result&& Best() && { return *std::move(best_); }
+  const Result& Best() const& { return best_; }
+  Result&& Best() && { return std::move(best_); }
 
  private:
   double least_gain_;
+  bool is_empty_ = true;
   double value_ = 0.0;
-  std::optional<Result> best_;
+  Result best_;
 };
 
 }  // namespace lightfit

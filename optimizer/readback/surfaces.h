@@ -72,7 +72,7 @@ int64_t NumSurfacesFound();
 // False where there is no surface, or none on either side.
 struct DepthGradient {
   double d, d_x, d_y;
-  bool is_one_sided;  // along x or y
+  bool is_one_sided = false;  // along x or y
 };
 bool DepthGradientAt(const Readback& readback,
                      const AffineDepth& affine_depth,
