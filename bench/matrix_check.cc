@@ -13,9 +13,9 @@ namespace lightfit {
 absl::StatusOr<MatrixCheck> MatrixCheck::Create(const Readback& readback,
                                                 const Light& light,
                                                 const SampleOptions& options) {
-  absl::StatusOr<Surfaces> receivers =
+  absl::StatusOr<Surfaces> surfaces =
       FindSurfaces(readback, uint32_t{1} << light.shadow_bit, options);
-  if (!receivers.ok()) return receivers.status();
+  if (!receivers.ok()) return surfaces.status();
   MatrixCheck check;
   // The right inverse of ray_from_world, whose first three columns have orthonormal rows or, for a
   // directional light, two of them and the world point's fourth coordinate.
@@ -23,9 +23,9 @@ absl::StatusOr<MatrixCheck> MatrixCheck::Create(const Readback& readback,
   check.world_from_ray_.topRows<3>() = ray_from_world.leftCols<3>().transpose();
   check.world_from_ray_.row(3).setZero();
   if (light.kind == Light::Kind::kDirectional) check.world_from_ray_(3, 2) = 1.0;
-  check.samples_ = SelectSamples(*receivers,
+  check.samples_ = SelectSamples(*surfaces,
                                  light,
-                                 receivers->options,
+                                 surfaces->options,
                                  Eigen::Matrix3d::Identity(),
                                  /*with_edge_normals=*/false);
   const AffineDepth affine_depth(readback.camera, readback.depth_kind);
@@ -36,7 +36,7 @@ absl::StatusOr<MatrixCheck> MatrixCheck::Create(const Readback& readback,
       const double depth = readback.depth[pixel];
       if (!affine_depth.IsSurface(depth)) continue;
       const Eigen::Vector4d screen(x + 0.5, y + 0.5, affine_depth.At(x, y, depth), 1.0);
-      check.receivers_.emplace_back((world_from_screen * screen).hnormalized());
+      check.surfaces_.emplace_back((world_from_screen * screen).hnormalized());
     }
   }
   return check;
@@ -48,7 +48,7 @@ MatrixQuality MatrixCheck::Measure(const Eigen::Matrix4d& map_from_world, MapSiz
 
   MatrixQuality quality;
   quality.energy = Energy(rows * world_from_ray_, samples_, MetricWeights());
-  for (const Eigen::Vector3d& receiver : receivers_) {
+  for (const Eigen::Vector3d& receiver : surfaces_) {
     const Eigen::Vector3d p = rows * receiver.homogeneous();
     if (!(p.z() > 0.0)) {
       quality.outside_texels = std::numeric_limits<double>::infinity();

@@ -74,9 +74,8 @@ absl::Status ReadGoal(const v1::AllocateRequest& request, AllocationTask* task) 
 absl::Status ReadReadback(const v1::AllocateRequest& request,
                           const ReadbackView& readback,
                           const std::vector<RequestLight>& lights,
-                          const CallContext& context,
                           AllocationTask* task) {
-  const absl::StatusOr<FitOptions> options = OptionsOfRequest(request.options(), context);
+  const absl::StatusOr<FitOptions> options = OptionsOfRequest(request.options());
   if (!options.ok()) return options.status();
   task->options = *options;
   task->readback = readback.view();
@@ -105,13 +104,13 @@ absl::Status CheckTolerance(const AllocationTask& task) {
 }
 
 absl::Status ReadSummaries(const v1::AllocateRequest& request,
-                           const CallContext& context,
+                           const CallLimits& limits,
                            AllocationTask* task) {
   absl::StatusOr<SummarySet> sum =
-      SummariesOfRequest(request.summaries(), request.summary_files(), context);
+      SummariesOfRequest(request.summaries(), request.summary_files(), limits);
   if (!sum.ok()) return sum.status();
   const absl::StatusOr<FitOptions> options =
-      OptionsOfSummaryRequest(request.options(), sum->options, context);
+      OptionsOfSummaryRequest(request.options(), sum->options);
   if (!options.ok()) return options.status();
   task->options = *options;
   for (const LightSummary& light : sum->lights) task->lights.push_back(light.total.light);
@@ -150,9 +149,7 @@ absl::Status ReadWeights(const v1::AllocateRequest& request, AllocationTask* tas
 }
 
 // Fits and hands back what the task asks for. Lights that could not be used keep their name alone.
-absl::StatusOr<v1::Allocation> Answer(const v1::AllocateRequest& request,
-                                      const CallContext& context,
-                                      AllocationTask* task) {
+absl::StatusOr<v1::Allocation> Answer(const v1::AllocateRequest& request, AllocationTask* task) {
   const absl::StatusOr<ClipConvention> clip = ClipOfRequest(request);
   if (!clip.ok()) return clip.status();
   const absl::StatusOr<MapSizeRules> rules =
@@ -187,18 +184,18 @@ absl::StatusOr<v1::Allocation> AnswerAllocate(const v1::AllocateRequest& request
   if (status.ok()) status = ReadGoal(request, &task);
   if (!status.ok()) return status;
   if (IsOfSummaries(request)) {
-    status = ReadSummaries(request, context, &task);
+    status = ReadSummaries(request, context.limits, &task);
     if (!status.ok()) return status;
-    return Answer(request, context, &task);
+    return Answer(request, &task);
   }
   const absl::StatusOr<std::vector<RequestLight>> lights = LightsOfRequest(request.lights());
   if (!lights.ok()) return lights.status();
   const absl::StatusOr<ReadbackView> readback =
       ReadbackView::Of(request.readback(), request.lights_size(), context.limits);
   if (!readback.ok()) return readback.status();
-  status = ReadReadback(request, *readback, *lights, context, &task);
+  status = ReadReadback(request, *readback, *lights, &task);
   if (!status.ok()) return status;
-  return Answer(request, context, &task);
+  return Answer(request, &task);
 }
 
 }  // namespace lightfit

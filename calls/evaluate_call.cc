@@ -106,7 +106,7 @@ absl::StatusOr<v1::EvaluateResult> AnswerEvaluate(const v1::EvaluateRequest& req
   }
   const absl::StatusOr<std::vector<RequestLight>> lights = LightsOfRequest(request.lights());
   if (!lights.ok()) return lights.status();
-  const absl::StatusOr<FitOptions> options = OptionsOfRequest(request.options(), context);
+  const absl::StatusOr<FitOptions> options = OptionsOfRequest(request.options());
   if (!options.ok()) return options.status();
   const absl::StatusOr<ReadbackView> readback =
       ReadbackView::Of(request.readback(), request.lights_size(), context.limits);

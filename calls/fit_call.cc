@@ -56,7 +56,7 @@ absl::StatusOr<v1::FitResult> AnswerFit(const v1::FitRequest& request,
   const StopScope stop_scope(context.stop);
   const absl::StatusOr<std::vector<RequestLight>> lights = LightsOfRequest(request.lights());
   if (!lights.ok()) return lights.status();
-  const absl::StatusOr<FitOptions> options = OptionsOfRequest(request.options(), context);
+  const absl::StatusOr<FitOptions> options = OptionsOfRequest(request.options());
   if (!options.ok()) return options.status();
   const absl::StatusOr<MapSize> map = MapSizeOfRequest(request.map(), *options);
   if (!map.ok()) return map.status();

@@ -7,8 +7,7 @@
 
 namespace lightfit {
 
-absl::StatusOr<FitOptions> OptionsOfRequest(const v1::FitOptions& proto,
-                                            const CallContext& context) {
+absl::StatusOr<FitOptions> OptionsOfRequest(const v1::FitOptions& proto) {
   absl::StatusOr<FitOptions> options = FitOptionsFromProto(proto);
   if (!options.ok()) return options.status();
   for (const auto& [field, steps] : {std::pair{"reweighting_rounds", options->reweighting_rounds},

@@ -2,11 +2,10 @@
 //
 // How a request wants its fits done.
 // In:   v1::FitOptions.
-// Out:  FitOptions that end when the call does, and whose memory is bounded.
+// Out:  FitOptions whose memory is bounded.
 #pragma once
 
 #include "absl/status/statusor.h"
-#include "calls/call_context.h"
 #include "lightfit/v1/options.pb.h"
 #include "optimizer/fit_options.h"
 
@@ -17,7 +16,6 @@ namespace lightfit {
 inline constexpr int kMaxSearchSteps = 1000;
 
 // InvalidArgument names the field.
-absl::StatusOr<FitOptions> OptionsOfRequest(const v1::FitOptions& options,
-                                            const CallContext& context);
+absl::StatusOr<FitOptions> OptionsOfRequest(const v1::FitOptions& options);
 
 }  // namespace lightfit

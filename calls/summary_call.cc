@@ -17,10 +17,10 @@ absl::StatusOr<v1::FitResult> AnswerFitSummary(const v1::FitSummaryRequest& requ
   const absl::StatusOr<ClipConvention> clip = ClipOfRequest(request);
   if (!clip.ok()) return clip.status();
   const absl::StatusOr<SummarySet> sum =
-      SummariesOfRequest(request.summaries(), request.summary_files(), context);
+      SummariesOfRequest(request.summaries(), request.summary_files(), context.limits);
   if (!sum.ok()) return sum.status();
   const absl::StatusOr<FitOptions> options =
-      OptionsOfSummaryRequest(request.options(), sum->options, context);
+      OptionsOfSummaryRequest(request.options(), sum->options);
   if (!options.ok()) return options.status();
   const absl::StatusOr<MapSize> map = MapSizeOfRequest(request.map(), *options);
   if (!map.ok()) return map.status();

@@ -23,8 +23,7 @@ using google::protobuf::Message;
 // Adds the next summary of the request to `sum`, which is empty at first.
 absl::Status AddTo(std::optional<SummarySet>* sum,
                    const std::string& field,
-                   absl::StatusOr<SummarySet> set,
-                   const CallContext& context) {
+                   absl::StatusOr<SummarySet> set) {
   if (StopRequested()) return StoppedError();
   if (!set.ok()) return InFile(field, set.status());
   if (!sum->has_value()) {
@@ -80,38 +79,37 @@ absl::Status CheckHeld(const v1::FitOptions& asked, const v1::FitOptions& held) 
 absl::StatusOr<SummarySet> SummariesOfRequest(
     const google::protobuf::RepeatedPtrField<v1::SummaryFile>& summaries,
     const google::protobuf::RepeatedPtrField<std::string>& summary_files,
-    const CallContext& context) {
+    const CallLimits& limits) {
   const int64_t count = int64_t{summaries.size()} + summary_files.size();
   if (count == 0) {
     return absl::InvalidArgumentError(
         "summaries: none, want at least one in summaries or summary_files");
   }
-  if (count > context.limits.max_summaries) {
+  if (count > limits.max_summaries) {
     return absl::ResourceExhaustedError(
         absl::StrFormat("summaries and summary_files: %d of them, and this server takes at most "
                         "%d; add some of them up first with lightfit summarize",
                         count,
-                        context.limits.max_summaries));
+                        limits.max_summaries));
   }
   std::optional<SummarySet> sum;
   for (int i = 0; i < summaries.size(); ++i) {
     absl::Status status =
-        AddTo(&sum, absl::StrCat("summaries[", i, "]"), SummarySetFromProto(summaries[i]), context);
+        AddTo(&sum, absl::StrCat("summaries[", i, "]"), SummarySetFromProto(summaries[i]));
     if (!status.ok()) return status;
   }
   for (int i = 0; i < summary_files.size(); ++i) {
-    absl::Status status = AddTo(
-        &sum, absl::StrCat("summary_files[", i, "]"), ParseSummarySet(summary_files[i]), context);
+    absl::Status status =
+        AddTo(&sum, absl::StrCat("summary_files[", i, "]"), ParseSummarySet(summary_files[i]));
     if (!status.ok()) return status;
   }
   return *std::move(sum);
 }
 
 absl::StatusOr<FitOptions> OptionsOfSummaryRequest(const v1::FitOptions& asked,
-                                                   const FitOptions& held,
-                                                   const CallContext& context) {
+                                                   const FitOptions& held) {
   // First what the fields are alone: one that is unknown or out of range is not one that differs.
-  const absl::StatusOr<FitOptions> options = OptionsOfRequest(asked, context);
+  const absl::StatusOr<FitOptions> options = OptionsOfRequest(asked);
   if (!options.ok()) return options.status();
   absl::Status status = CheckHeld(asked, FitOptionsToProto(held));
   if (!status.ok()) return status;

@@ -23,12 +23,11 @@ namespace lightfit {
 absl::StatusOr<SummarySet> SummariesOfRequest(
     const google::protobuf::RepeatedPtrField<v1::SummaryFile>& summaries,
     const google::protobuf::RepeatedPtrField<std::string>& summary_files,
-    const CallContext& context);
+    const CallLimits& limits);
 
 // The search is as asked for. InvalidArgument names a field that asks for other samples, metric or
 // cover than `held`, which the summaries were made with.
 absl::StatusOr<FitOptions> OptionsOfSummaryRequest(const v1::FitOptions& asked,
-                                                   const FitOptions& held,
-                                                   const CallContext& context);
+                                                   const FitOptions& held);
 
 }  // namespace lightfit

@@ -29,7 +29,7 @@ absl::StatusOr<TrackerOptions> TrackerOptionsOf(const v1::TrackSetup& setup) {
     }
     options = TrackerOptions::ForStability(stability);
   }
-  const absl::StatusOr<FitOptions> fit = OptionsOfRequest(setup.options(), CallContext());
+  const absl::StatusOr<FitOptions> fit = OptionsOfRequest(setup.options());
   if (!fit.ok()) return fit.status();
   options->fit = *fit;
   return options;

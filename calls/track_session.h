@@ -12,7 +12,6 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "calls/call_context.h"
 #include "geometry/clip.h"
 #include "geometry/light.h"
 #include "lightfit/v1/result.pb.h"

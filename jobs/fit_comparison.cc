@@ -59,21 +59,25 @@ class Judge {
   std::optional<LightView> own_view_;  // absent: the same
 };
 
+// What the surfaces of a read-back were found with must be the same for all who ask of them.
+SampleOptions OnTheSameSurfaces(SampleOptions samples, const FitOptions& options) {
+  samples.max_depth_bend = options.samples.max_depth_bend;
+  samples.depth_noise = options.samples.depth_noise;
+  return samples;
+}
+
 }  // namespace
 
 FitOptions FigureOptions(const FitOptions& options) {
   FitOptions figures = options;
-  figures.samples = SampleOptions();
-  figures.samples.max_depth_bend = options.samples.max_depth_bend;
-  figures.samples.depth_noise = options.samples.depth_noise;
+  figures.samples = OnTheSameSurfaces(SampleOptions(), options);
   figures.cover = Cover::kShadowed;
   return figures;
 }
 
 FitOptions FocusedOptions(const FitOptions& options) {
   FitOptions focused;
-  focused.samples.max_depth_bend = options.samples.max_depth_bend;
-  focused.samples.depth_noise = options.samples.depth_noise;
+  focused.samples = OnTheSameSurfaces(focused.samples, options);
   focused.margin_percent = options.margin_percent;
   focused.margin_texels = options.margin_texels;
   focused.search = Search::kFocused;
@@ -84,6 +88,7 @@ FitOptions FocusedOptions(const FitOptions& options) {
 
 FitOptions PublishedOptions(const FitOptions& options) {
   FitOptions published = FitOptions::AsPublished();
+  published.samples = OnTheSameSurfaces(published.samples, options);
   published.samples.min_samples = options.samples.min_samples;
   published.margin_percent = options.margin_percent;
   published.margin_texels = options.margin_texels;

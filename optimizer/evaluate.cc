@@ -15,6 +15,7 @@ absl::StatusOr<Figures> EvaluateMatrix(const LightView& view,
                                        MapSize map,
                                        const FitOptions& options) {
   const Light& light = *view.light;
+  if (absl::Status status = CheckServes(view, options); !status.ok()) return status;
   const absl::StatusOr<Eigen::Matrix3d> map_from_ray = MapFromRay(map_from_world, light);
   if (!map_from_ray.ok()) return map_from_ray.status();
   const Eigen::Matrix3d map_from_normalized = *map_from_ray * view.normalized_from_ray().inverse();
@@ -44,14 +45,9 @@ absl::StatusOr<Figures> EvaluateMatrix(const Readback& readback,
                                        const Eigen::Matrix4d& map_from_world,
                                        MapSize map,
                                        const FitOptions& options) {
-  if (absl::Status status = ValidateFitOptions(options); !status.ok()) return status;
-  if (absl::Status status = ValidateLight(light); !status.ok()) return status;
-  const absl::StatusOr<Surfaces> surfaces =
-      FindSurfaces(readback, uint32_t{1} << light.shadow_bit, options.samples);
-  if (!surfaces.ok()) return surfaces.status();
-  const absl::StatusOr<LightView> view = ViewLight(*surfaces, light, options);
-  if (!view.ok()) return view.status();
-  return EvaluateMatrix(*view, map_from_world, map, options);
+  return AskView(readback, light, options, [&](const LightView& view) {
+    return EvaluateMatrix(view, map_from_world, map, options);
+  });
 }
 
 }  // namespace lightfit

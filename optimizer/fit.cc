@@ -8,28 +8,12 @@
 #include "geometry/homography.h"
 #include "geometry/map_size.h"
 #include "optimizer/energy/l1_weights.h"
-#include "optimizer/light_view.h"
+#include "optimizer/fit_matrix.h"
 #include "optimizer/readback/surfaces.h"
 
 namespace lightfit {
 
 namespace {
-
-// The facades of a read-back: its surfaces, the light's view of them, then `ask` of the view.
-template <typename Ask>
-auto AskView(const Readback& readback,
-             const Light& light,
-             const FitOptions& options,
-             const Ask& ask) -> decltype(ask(std::declval<const LightView&>())) {
-  if (absl::Status status = ValidateFitOptions(options); !status.ok()) return status;
-  if (absl::Status status = ValidateLight(light); !status.ok()) return status;
-  const absl::StatusOr<Surfaces> surfaces =
-      FindSurfaces(readback, LightMask(absl::MakeConstSpan(&light, 1)), options.samples);
-  if (!surfaces.ok()) return surfaces.status();
-  const absl::StatusOr<LightView> view = ViewLight(*surfaces, light, options);
-  if (!view.ok()) return view.status();
-  return ask(*view);
-}
 
 // For the L1 metrics gives the samples the weights they have in a map, and sums them up.
 Summary WeighedIn(const Eigen::Matrix3d& map_from_normalized,
@@ -95,6 +79,7 @@ absl::StatusOr<LightMatrix> FitLight(const LightView& view,
   if (absl::Status status = ValidateMapSize(map, options.margin_texels); !status.ok()) {
     return status;
   }
+  if (absl::Status status = CheckServes(view, options); !status.ok()) return status;
   if (!view.cover.ok()) return view.cover.status();
   const Summary summary = SummaryOfView(view, options);
   return FitMatrix({*view.light, summary, &view.samples, view.surfaces}, map, options);
@@ -108,6 +93,7 @@ absl::StatusOr<Summary> Summarize(const Readback& readback,
 }
 
 absl::StatusOr<Summary> Summarize(const LightView& view, const FitOptions& options) {
+  if (absl::Status status = CheckServes(view, options); !status.ok()) return status;
   if (!view.cover.ok()) return view.cover.status();
   const Light& light = *view.light;
   Summary summary = SummaryOfView(view, options);
@@ -137,6 +123,7 @@ absl::StatusOr<Summary> SummarizeInMap(const LightView& view,
                                        const Eigen::Matrix4d& map_from_world,
                                        const FitOptions& options) {
   const Light& light = *view.light;
+  if (absl::Status status = CheckServes(view, options); !status.ok()) return status;
   const absl::StatusOr<Eigen::Matrix3d> map_from_ray = MapFromRay(map_from_world, light);
   if (!map_from_ray.ok()) return map_from_ray.status();
   if (!view.cover.ok()) return view.cover.status();

@@ -2,26 +2,28 @@
 //
 // One light in one read-back: made once, and all that is asked about the light is asked of it.
 // In:   Surfaces, a Light, FitOptions that say which samples count and what the map must cover.
-// Out:  LightView {cover, samples}; what comes of it is in optimizer/fit.h and optimizer/figures.
+// Out:  LightView {cover, samples}; optimizer/fit.h and optimizer/evaluate.h ask it.
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
+#include <utility>
 
 #include "absl/status/statusor.h"
 #include "geometry/light.h"
-#include "geometry/map_size.h"
+#include "optimizer/energy/summary.h"
 #include "optimizer/fit_options.h"
-#include "optimizer/light_matrix.h"
 #include "optimizer/readback/cover.h"
 #include "optimizer/readback/samples.h"
 #include "optimizer/readback/surfaces.h"
-#include "optimizer/search/axis_search.h"
 
 namespace lightfit {
 
 struct LightView {
   const Surfaces* surfaces;  // must outlive the view, as must the light
   const Light* light;
+
+  SampleOptions sample_options;  // that `samples` were chosen by
 
   // What the map must have room for, or why no single map has: FailedPrecondition as
   // CoverReceivers(). Somebody's matrix can be judged all the same.
@@ -39,29 +41,36 @@ struct LightView {
 
 // Here and below: CancelledError once a StopScope says so.
 
-// Of `options` count `samples`, `cover` and whether `metric` needs edge normals; whoever takes the
-// view wants the same. InvalidArgument for a light that cannot be used, or samples that the
-// surfaces were not found for (FindSurfaces()).
+// Of `options` count `samples`, `cover` and whether `metric` needs edge normals. InvalidArgument
+// for a light that cannot be used, or samples that the surfaces were not found for
+// (FindSurfaces()).
 absl::StatusOr<LightView> ViewLight(const Surfaces& surfaces,
                                     const Light& light,
                                     const FitOptions& options);
 
+// InvalidArgument for options that the view was not made with, but for the cover and min_samples:
+// figures would be of other samples than was asked, and nobody could tell. All that take a view
+// ask.
+absl::Status CheckServes(const LightView& view, const FitOptions& options);
+
 // The samples summed up in the metric. Requires view.cover.ok().
 Summary SummaryOfView(const LightView& view, const FitOptions& options);
 
-// The fit: search, then the matrix. `map` has passed ValidateMapSize().
-absl::StatusOr<LightMatrix> FitMatrix(const SearchInputs& inputs,
-                                      MapSize map,
-                                      const FitOptions& options,
-                                      SearchEffort effort = SearchEffort::kUsual);
-
-// The same without the search: the matrix of a map that is there already (rows h1, h2 and p, from
-// the summary's normalised rays), with its depth row laid over these receivers, and its figures.
-// A mirrored map is turned over.
-// InvalidArgument when w <= 0 on a ray that is to be covered.
-absl::StatusOr<LightMatrix> MatrixOfMap(const SearchInputs& inputs,
-                                        const Eigen::Matrix3d& map_from_normalized,
-                                        MapSize map,
-                                        const FitOptions& options);
+// What `ask` says of the light's view in a read-back that nobody else asks: the calls on a
+// read-back are this around those on a view. Errors are also those of options, light and read-back.
+template <typename Ask>
+auto AskView(const Readback& readback,
+             const Light& light,
+             const FitOptions& options,
+             const Ask& ask) -> decltype(ask(std::declval<const LightView&>())) {
+  if (absl::Status status = ValidateFitOptions(options); !status.ok()) return status;
+  if (absl::Status status = ValidateLight(light); !status.ok()) return status;
+  const absl::StatusOr<Surfaces> surfaces =
+      FindSurfaces(readback, uint32_t{1} << light.shadow_bit, options.samples);
+  if (!surfaces.ok()) return surfaces.status();
+  const absl::StatusOr<LightView> view = ViewLight(*surfaces, light, options);
+  if (!view.ok()) return view.status();
+  return ask(*view);
+}
 
 }  // namespace lightfit

@@ -43,16 +43,18 @@ absl::StatusOr<ReadbackFile> ReadFrame(const ShotFrame& frame, absl::Span<const 
   return file;
 }
 
-absl::StatusOr<Surfaces> SurfacesOf(const ShotJob& job, const absl::StatusOr<ReadbackFile>& file) {
-  if (!file.ok()) return file.status();
-  return FindSurfaces(file->View(), LightMask(job.lights), job.fit().samples);
-}
-
-absl::StatusOr<LightView> ViewIn(const ShotJob& job,
-                                 const absl::StatusOr<Surfaces>& surfaces,
-                                 size_t light) {
-  if (!surfaces.ok()) return surfaces.status();
-  return ViewLight(*surfaces, job.lights[light], job.fit());
+FrameViews::FrameViews(const ShotJob& job, const absl::StatusOr<ReadbackFile>& file)
+    : surfaces_(file.ok() ? FindSurfaces(file->View(), LightMask(job.lights), job.fit().samples)
+                          : absl::StatusOr<Surfaces>(file.status())) {
+  for (size_t i = 0; i < job.lights.size(); ++i) {
+    const absl::Status status =
+        file.ok() && !file->light_status[i].ok() ? file->light_status[i] : surfaces_.status();
+    if (status.ok()) {
+      views_.push_back(ViewLight(*surfaces_, job.lights[i], job.fit()));
+    } else {
+      views_.emplace_back(status);
+    }
+  }
 }
 
 TrackedMatrices FitReadable(absl::Span<const Light> lights,
@@ -99,8 +101,7 @@ LightMaps MapsOf(const ShotJob& job, const v1::FitResult& result) {
 
 std::vector<absl::StatusOr<ShotFit>> JudgeFits(
     const ShotJob& job,
-    const absl::StatusOr<ReadbackFile>& file,
-    const absl::StatusOr<Surfaces>& surfaces,
+    const FrameViews& views,
     absl::Span<const absl::StatusOr<TrackedMatrix>> matrices,
     const FrameBefore& before) {
   std::vector<absl::StatusOr<ShotFit>> fits;
@@ -109,14 +110,13 @@ std::vector<absl::StatusOr<ShotFit>> JudgeFits(
       fits.emplace_back(matrices[i].status());
       continue;
     }
-    const absl::StatusOr<LightView> view = ViewIn(job, surfaces, i);
-    if (!view.ok()) {
-      fits.emplace_back(view.status());
+    if (!views[i].ok()) {
+      fits.emplace_back(views[i].status());
       continue;
     }
     const bool has_before = before.file != nullptr && before.file->light_status[i].ok();
     fits.push_back(JudgeFit(job,
-                            *view,
+                            *views[i],
                             *matrices[i],
                             has_before ? before.file : nullptr,
                             has_before ? before.maps[i] : std::nullopt));

@@ -21,12 +21,22 @@ using LightMaps = std::vector<std::optional<Eigen::Matrix4d>>;  // map_from_worl
 // Reads and checks the frame.
 absl::StatusOr<ReadbackFile> ReadFrame(const ShotFrame& frame, absl::Span<const Light> lights);
 
-// What the frame says of all the job's lights, found once for whatever is asked of it. Refers to
-// the file's buffers.
-absl::StatusOr<Surfaces> SurfacesOf(const ShotJob& job, const absl::StatusOr<ReadbackFile>& file);
-absl::StatusOr<LightView> ViewIn(const ShotJob& job,
-                                 const absl::StatusOr<Surfaces>& surfaces,
-                                 size_t light);
+// What the frame says of the job's lights, found once for whatever is asked of it: element l of the
+// views belongs to job.lights[l], or says why there is none. Refers to the job and the file's
+// buffers, and stays where it is.
+class FrameViews {
+ public:
+  FrameViews(const ShotJob& job, const absl::StatusOr<ReadbackFile>& file);
+  FrameViews(const FrameViews&) = delete;
+  FrameViews& operator=(const FrameViews&) = delete;
+
+  const absl::StatusOr<Surfaces>& surfaces() const { return surfaces_; }
+  const absl::StatusOr<LightView>& operator[](size_t light) const { return views_[light]; }
+
+ private:
+  absl::StatusOr<Surfaces> surfaces_;
+  std::vector<absl::StatusOr<LightView>> views_;
+};
 
 // Calls `fit` for the lights that the file has a shadow of. The others get their own status, and
 // all that of a file which could not be read.
@@ -46,8 +56,7 @@ struct FrameBefore {
 // Energies and footprints become those of EvaluateMatrix(), by one measure for all modes.
 std::vector<absl::StatusOr<ShotFit>> JudgeFits(
     const ShotJob& job,
-    const absl::StatusOr<ReadbackFile>& file,
-    const absl::StatusOr<Surfaces>& surfaces,
+    const FrameViews& views,
     absl::Span<const absl::StatusOr<TrackedMatrix>> matrices,
     const FrameBefore& before);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -21,7 +22,7 @@ namespace {
 struct FrameWork {
   size_t frame = 0;
   absl::StatusOr<ReadbackFile> file = absl::UnknownError("not read");
-  absl::StatusOr<Surfaces> surfaces = absl::UnknownError("not read");  // of the file
+  std::optional<FrameViews> views;  // in the file
 
   struct Mode {
     TrackedMatrices matrices;
@@ -95,29 +96,28 @@ class FramePipeline {
     if (MustReadFrame(context_, frame)) {
       work->file = ReadFrame(job_.frames[frame], job_.lights);
       context_.frame_status[frame] = work->file.status();
-      work->surfaces = SurfacesOf(job_, work->file);
+      work->views.emplace(job_, work->file);
     }
     if (IsMissing(ShotMode::kPerFrame, frame)) {
-      work->per_frame.matrices =
-          FitReadable(job_.lights, work->file, [&](absl::Span<const Light> lights) {
-            TrackedMatrices fits;
-            for (auto& matrix : FitAll(work->surfaces, lights)) {
-              if (matrix.ok()) {
-                fits.emplace_back(TrackedMatrix{*std::move(matrix), TrackerAction::kReplaced, 0});
-              } else {
-                fits.emplace_back(matrix.status());
-              }
-            }
-            return fits;
-          });
+      work->per_frame.matrices = FitAll(*work->views);
       work->per_frame.maps = MapsOf(work->per_frame.matrices);
     }
     if (NeedsSummary(context_, frame)) Summarise(*work);
   }
 
-  LightMatrices FitAll(const absl::StatusOr<Surfaces>& surfaces, absl::Span<const Light> lights) {
-    if (!surfaces.ok()) return LightMatrices(lights.size(), surfaces.status());
-    return FitLights(*surfaces, lights, job_.map, job_.fit());
+  TrackedMatrices FitAll(const FrameViews& views) const {
+    TrackedMatrices fits;
+    for (size_t i = 0; i < job_.lights.size(); ++i) {
+      absl::StatusOr<LightMatrix> matrix = views[i].ok()
+                                               ? FitLight(*views[i], job_.map, job_.fit())
+                                               : absl::StatusOr<LightMatrix>(views[i].status());
+      if (matrix.ok()) {
+        fits.emplace_back(TrackedMatrix{*std::move(matrix), TrackerAction::kReplaced, 0});
+      } else {
+        fits.emplace_back(matrix.status());
+      }
+    }
+    return fits;
   }
 
   void LoadDone(ShotMode mode, size_t frame, FrameWork::Mode* part) {
@@ -144,9 +144,7 @@ class FramePipeline {
     } else if (work.file.ok()) {
       std::vector<LightSummary> lights;
       for (size_t i = 0; i < job_.lights.size(); ++i) {
-        const absl::Status& status = work.file->light_status[i];
-        const absl::StatusOr<LightView> view =
-            status.ok() ? ViewIn(job_, work.surfaces, i) : absl::StatusOr<LightView>(status);
+        const absl::StatusOr<LightView>& view = (*work.views)[i];
         const absl::StatusOr<Summary> summary =
             view.ok() ? Summarize(*view, job_.fit()) : absl::StatusOr<Summary>(view.status());
         lights.push_back(SummaryOfFrame(job_.lights[i], summary, frame.name, job_.fit()));
@@ -179,8 +177,9 @@ class FramePipeline {
       return;
     }
     tracked.matrices = FitReadable(job_.lights, work->file, [&](absl::Span<const Light> lights) {
-      return work->surfaces.ok() ? tracker_.Update(*work->surfaces, lights, job_.map)
-                                 : TrackedMatrices(lights.size(), work->surfaces.status());
+      const absl::StatusOr<Surfaces>& surfaces = work->views->surfaces();
+      return surfaces.ok() ? tracker_.Update(*surfaces, lights, job_.map)
+                           : TrackedMatrices(lights.size(), surfaces.status());
     });
     tracked.maps = MapsOf(tracked.matrices);
     tracked.states = tracker_.state();
@@ -203,7 +202,7 @@ class FramePipeline {
     }
     const FrameWork::Mode& own = work->*part;
     const std::vector<absl::StatusOr<ShotFit>> fits =
-        JudgeFits(job_, work->file, work->surfaces, own.matrices, before);
+        JudgeFits(job_, *work->views, own.matrices, before);
     context_.WriteResult(mode,
                          work->frame,
                          ShotResultToProto(job_,

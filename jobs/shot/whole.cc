@@ -58,13 +58,11 @@ std::vector<std::optional<SummaryTotal>> WeighAllFrames(const ShotMatrices& matr
   const auto weigh = [&](size_t frame) {
     const absl::StatusOr<ReadbackFile> file = ReadFrame(job.frames[frame], job.lights);
     context->frame_status[frame] = file.status();
-    const absl::StatusOr<Surfaces> surfaces = SurfacesOf(job, file);
-    for (size_t i = 0; i < job.lights.size() && file.ok(); ++i) {
-      if (!matrices[i].ok() || !file->light_status[i].ok()) continue;
-      const absl::StatusOr<LightView> view = ViewIn(job, surfaces, i);
-      if (!view.ok()) continue;
+    const FrameViews views(job, file);
+    for (size_t i = 0; i < job.lights.size(); ++i) {
+      if (!matrices[i].ok() || !views[i].ok()) continue;
       const absl::StatusOr<Summary> summary =
-          SummarizeInMap(*view, matrices[i]->map_from_world, job.fit());
+          SummarizeInMap(*views[i], matrices[i]->map_from_world, job.fit());
       if (!summary.ok()) continue;  // as when it was summarised first: the light is not seen here
       const SummaryTotal own = TotalOf(*summary, job.lights[i]);
       const std::lock_guard<std::mutex> lock(mutex);
@@ -174,7 +172,7 @@ void JudgeFrames(const TrackedMatrices& matrices, int begin, int end, ShotContex
     if (i > 0 && last_read != i - 1) before = ReadFrame(job.frames[i - 1], job.lights);
     absl::StatusOr<ReadbackFile> file = ReadFrame(job.frames[i], job.lights);
     context->frame_status[i] = file.status();
-    const absl::StatusOr<Surfaces> surfaces = SurfacesOf(job, file);
+    const FrameViews views(job, file);
     const TrackedMatrices readable = FitReadable(job.lights, file, [&](absl::Span<const Light>) {
       TrackedMatrices some;
       for (size_t light = 0; light < job.lights.size(); ++light) {
@@ -184,8 +182,7 @@ void JudgeFrames(const TrackedMatrices& matrices, int begin, int end, ShotContex
     });
     FrameBefore frame_before;
     if (i > 0 && before.ok()) frame_before = {&*before, MapsOf(matrices)};
-    std::vector<absl::StatusOr<ShotFit>> fits =
-        JudgeFits(job, file, surfaces, readable, frame_before);
+    std::vector<absl::StatusOr<ShotFit>> fits = JudgeFits(job, views, readable, frame_before);
     for (absl::StatusOr<ShotFit>& fit : fits) {
       if (!fit.ok()) continue;
       LightMatrix& matrix = fit->tracked.matrix;

@@ -122,24 +122,22 @@ absl::Status SurroundedError(const Light& light) {
       light.position.z()));
 }
 
-absl::StatusOr<RayCover> CoverReceivers(const Surfaces& receivers,
-                                        const Light& light,
-                                        Cover which) {
+absl::StatusOr<RayCover> CoverReceivers(const Surfaces& surfaces, const Light& light, Cover which) {
   DepthTiles shadowed;
   if (which == Cover::kShadowed) {
     shadowed = BuildDepthTiles(
-        receivers.readback, receivers.affine_depth, {uint32_t{1} << light.shadow_bit});
+        surfaces.readback, surfaces.affine_depth, {uint32_t{1} << light.shadow_bit});
   }
   if (absl::Status status = CheckStop(light); !status.ok()) return status;
   const bool covers_all = shadowed.num_surfaces == 0;
-  const CoveredSurfaces covered = {receivers, covers_all ? receivers.tiles : shadowed};
+  const CoveredSurfaces covered = {surfaces, covers_all ? surfaces.tiles : shadowed};
   const DepthTiles& tiles = covered.tiles;
-  const Matrix34d ray_from_screen = RayFromWorld(light) * receivers.world_from_screen;
+  const Matrix34d ray_from_screen = RayFromWorld(light) * surfaces.world_from_screen;
   RayCover cover;
   cover.nothing_shadowed = which == Cover::kShadowed && covers_all;
   Eigen::Matrix3d frame_from_ray = Eigen::Matrix3d::Identity();
   DepthOnScreen depth;
-  depth.scale_from_screen = receivers.world_from_screen.row(3);
+  depth.scale_from_screen = surfaces.world_from_screen.row(3);
   bool one_by_one = false;
   if (light.kind == Light::Kind::kPoint) {
     // Few, coarse boxes will do unless they reach around the light where finer ones do not.
@@ -171,7 +169,7 @@ absl::StatusOr<RayCover> CoverReceivers(const Surfaces& receivers,
     depth.depth_from_screen = frame_from_ray.row(2) * ray_from_screen;
   } else {
     depth.depth_from_screen =
-        light.direction.stableNormalized().transpose() * receivers.world_from_screen.topRows<3>();
+        light.direction.stableNormalized().transpose() * surfaces.world_from_screen.topRows<3>();
   }
   cover.depth =
       one_by_one ? RangeOverReceivers(covered, depth) : RangeOverBoxes(tiles.grids[0], depth);
@@ -181,12 +179,12 @@ absl::StatusOr<RayCover> CoverReceivers(const Surfaces& receivers,
   const std::optional<Eigen::Matrix3d> normalized = NormalizeRays(frame_from_ray, &cover.hull);
   if (!normalized.has_value()) {
     // A single shadowed pixel, or a row of them, has no area, which is as good as no shadow.
-    return covers_all ? FlatError(light) : CoverReceivers(receivers, light, Cover::kReceivers);
+    return covers_all ? FlatError(light) : CoverReceivers(surfaces, light, Cover::kReceivers);
   }
   cover.normalized_from_ray = *normalized;
   if (!covers_all) {
     // What is lit may land in the map too, behind all that is shadowed.
-    const TileGrid close = BoxesAlong(receivers.tiles.grids[0], *normalized * ray_from_screen);
+    const TileGrid close = BoxesAlong(surfaces.tiles.grids[0], *normalized * ray_from_screen);
     cover.depth.far = std::max(cover.depth.far, RangeOverBoxes(close, depth).far);
     if (absl::Status status = CheckStop(light); !status.ok()) return status;
   }

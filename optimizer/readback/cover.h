@@ -53,7 +53,7 @@ struct RayCover {
 //
 // FailedPrecondition when the receivers to cover surround a point light, or all lie in one plane
 // with the light; CancelledError once a StopScope says so.
-absl::StatusOr<RayCover> CoverReceivers(const Surfaces& receivers,
+absl::StatusOr<RayCover> CoverReceivers(const Surfaces& surfaces,
                                         const Light& light,
                                         Cover cover = Cover::kReceivers);
 

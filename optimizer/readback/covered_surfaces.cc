@@ -35,7 +35,7 @@ std::array<Eigen::Vector4d, 8> Corners(const DepthTile& tile) {
 }
 
 ScratchVector<Eigen::Vector4d> OneReceiverPerTile(const CoveredSurfaces& covered, size_t grid) {
-  const Readback& readback = covered.receivers.readback;
+  const Readback& readback = covered.surfaces.readback;
   const uint32_t mask = covered.tiles.filter.shadow_mask;
   const auto first_receiver = [&](const DepthTile& tile) -> Eigen::Vector4d {
     for (int y = tile.y_begin; y < tile.y_end; ++y) {
@@ -43,8 +43,8 @@ ScratchVector<Eigen::Vector4d> OneReceiverPerTile(const CoveredSurfaces& covered
         const size_t pixel = readback.Index(x, y);
         if (mask != 0 && (readback.shadow_bits[pixel] & mask) == 0) continue;
         const double depth = readback.depth[pixel];
-        if (!covered.receivers.affine_depth.IsSurface(depth)) continue;
-        return {x + 0.5, y + 0.5, covered.receivers.affine_depth.At(x, y, depth), 1.0};
+        if (!covered.surfaces.affine_depth.IsSurface(depth)) continue;
+        return {x + 0.5, y + 0.5, covered.surfaces.affine_depth.At(x, y, depth), 1.0};
       }
     }
     return Eigen::Vector4d::Zero();  // not reached: the tile has a receiver

@@ -31,15 +31,15 @@ void ForEachTile(const TileGrid& grid, const Visitor& visit) {
 }
 
 struct CoveredSurfaces {
-  const Surfaces& receivers;
+  const Surfaces& surfaces;
   const DepthTiles& tiles;
 
   // Calls visit(screen) for every one of the tile, as screen points (x, y, d, 1).
   template <typename Visitor>
   void ForEach(const DepthTile& tile, const Visitor& visit) const {
     ForEachSurface(
-        receivers.readback,
-        receivers.affine_depth,
+        surfaces.readback,
+        surfaces.affine_depth,
         tiles.filter,
         tile,
         [&visit](int x, int y, double d) { visit(Eigen::Vector4d(x + 0.5, y + 0.5, d, 1.0)); });

@@ -63,15 +63,15 @@ Facing FacingOf(const BoundaryPixel& pixel, const Light& light, const SampleOpti
 // from the light, whose bit is 0 because no shadow is looked up there.
 class Terminators {
  public:
-  Terminators(const Surfaces& receivers, uint32_t bit, const ScratchVector<Facing>& facing)
-      : receivers_(receivers), bit_(bit), facing_(facing) {
-    row_begin_.reserve(receivers.readback.height() + 1);
-    for (size_t i = 0; i < receivers.boundary.size(); ++i) {
-      while (static_cast<int>(row_begin_.size()) <= receivers.boundary[i].y) {
+  Terminators(const Surfaces& surfaces, uint32_t bit, const ScratchVector<Facing>& facing)
+      : surfaces_(surfaces), bit_(bit), facing_(facing) {
+    row_begin_.reserve(surfaces.readback.height() + 1);
+    for (size_t i = 0; i < surfaces.boundary.size(); ++i) {
+      while (static_cast<int>(row_begin_.size()) <= surfaces.boundary[i].y) {
         row_begin_.push_back(i);
       }
     }
-    row_begin_.resize(receivers.readback.height() + 1, receivers.boundary.size());
+    row_begin_.resize(surfaces.readback.height() + 1, surfaces.boundary.size());
   }
 
   // Whether every neighbour without shadow of a shadowed pixel is turned away from the light.
@@ -83,14 +83,13 @@ class Terminators {
 
  private:
   uint32_t Word(int x, int y) const {
-    return receivers_.readback
-        .shadow_bits[static_cast<size_t>(y) * receivers_.readback.width() + x];
+    return surfaces_.readback.shadow_bits[static_cast<size_t>(y) * surfaces_.readback.width() + x];
   }
 
   // A neighbour without shadow is a boundary pixel itself, unless no plane is known there.
   bool IsShadowedOrAway(int x, int y) const {
     if ((Word(x, y) & bit_) != 0) return true;
-    const auto begin = receivers_.boundary.begin();
+    const auto begin = surfaces_.boundary.begin();
     const auto found =
         std::lower_bound(begin + row_begin_[y],
                          begin + row_begin_[y + 1],
@@ -100,7 +99,7 @@ class Terminators {
            facing_[found - begin] == Facing::kAway;
   }
 
-  const Surfaces& receivers_;
+  const Surfaces& surfaces_;
   uint32_t bit_;
   const ScratchVector<Facing>& facing_;  // by boundary pixel
   ScratchVector<size_t> row_begin_;      // in Surfaces::boundary

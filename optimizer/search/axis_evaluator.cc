@@ -42,37 +42,37 @@ SampleEvaluator::SampleEvaluator(const Samples& samples,
       metric_(metric) {}
 
 SampleEvaluator::SampleEvaluator(const Samples& samples,
-                                 const Surfaces& receivers,
+                                 const Surfaces& surfaces,
                                  const MetricWeights& metric,
                                  const AffineProblem& problem,
                                  double min_w)
-    : AxisEvaluator(problem, min_w), samples_(samples), receivers_(&receivers), metric_(metric) {
+    : AxisEvaluator(problem, min_w), samples_(samples), surfaces_(&surfaces), metric_(metric) {
   // A dozen megabytes. Beyond that it takes no longer to work them out each time.
   constexpr int64_t kMostRaysKept = int64_t{1} << 19;
-  if (receivers.tiles.num_surfaces > kMostRaysKept) return;
-  rays_.reserve(receivers.tiles.num_surfaces);
+  if (surfaces.tiles.num_surfaces > kMostRaysKept) return;
+  rays_.reserve(surfaces.tiles.num_surfaces);
   ForEachRay([this](const Eigen::Vector3d& ray) {
     rays_.push_back(ray);
     return true;
   });
-  receivers_ = nullptr;
+  surfaces_ = nullptr;
 }
 
 template <typename Visitor>
 void SampleEvaluator::ForEachRay(const Visitor& visit) const {
-  if (receivers_ == nullptr) {
+  if (surfaces_ == nullptr) {
     for (size_t i = 0; i < rays_.size(); ++i) {
       if (IsStopped(i) || !visit(rays_[i])) return;
     }
     return;
   }
   bool goes_on = true;
-  for (const DepthTile& tile : receivers_->tiles.grids[0].tiles) {
+  for (const DepthTile& tile : surfaces_->tiles.grids[0].tiles) {
     if (!goes_on || StopRequested()) return;
     if (tile.num_surfaces == 0) continue;
-    ForEachSurface(receivers_->readback,
-                   receivers_->affine_depth,
-                   receivers_->tiles.filter,
+    ForEachSurface(surfaces_->readback,
+                   surfaces_->affine_depth,
+                   surfaces_->tiles.filter,
                    tile,
                    [&](int x, int y, double d) {
                      const Eigen::Vector4d screen(x + 0.5, y + 0.5, d, 1.0);

@@ -66,7 +66,7 @@ class SampleEvaluator final : public AxisEvaluator {
  public:
   // Samples and receivers must outlive the object.
   SampleEvaluator(const Samples& samples,
-                  const Surfaces& receivers,
+                  const Surfaces& surfaces,
                   const MetricWeights& metric,
                   const AffineProblem& problem,
                   double min_w);
@@ -88,7 +88,7 @@ class SampleEvaluator final : public AxisEvaluator {
   void ForEachRay(const Visitor& visit) const;
 
   const Samples& samples_;
-  const Surfaces* receivers_ = nullptr;  // whose rays are too many to keep; else null
+  const Surfaces* surfaces_ = nullptr;  // whose rays are too many to keep; else null
   ScratchVector<Eigen::Vector3d> rays_;
   MetricWeights metric_;
 };

@@ -10,7 +10,7 @@
 #include "base/stop.h"
 #include "optimizer/energy/reweighting.h"
 #include "optimizer/fit.h"
-#include "optimizer/light_view.h"
+#include "optimizer/fit_matrix.h"
 #include "optimizer/search/axis_search.h"
 
 namespace lightfit {
@@ -157,14 +157,9 @@ absl::StatusOr<Summary> SummarizeForAnyAspect(const LightView& view, const FitOp
 absl::StatusOr<Summary> SummarizeForAnyAspect(const Readback& readback,
                                               const Light& light,
                                               const FitOptions& options) {
-  if (absl::Status status = ValidateFitOptions(options); !status.ok()) return status;
-  if (absl::Status status = ValidateLight(light); !status.ok()) return status;
-  const absl::StatusOr<Surfaces> surfaces =
-      FindSurfaces(readback, LightMask(absl::MakeConstSpan(&light, 1)), options.samples);
-  if (!surfaces.ok()) return surfaces.status();
-  const absl::StatusOr<LightView> view = ViewLight(*surfaces, light, options);
-  if (!view.ok()) return view.status();
-  return SummarizeForAnyAspect(*view, options);
+  return AskView(readback, light, options, [&](const LightView& view) {
+    return SummarizeForAnyAspect(view, options);
+  });
 }
 
 }  // namespace lightfit

@@ -16,7 +16,7 @@
 #include "optimizer/energy/footprint.h"
 #include "optimizer/energy/reweighting.h"
 #include "optimizer/fit.h"
-#include "optimizer/light_view.h"
+#include "optimizer/fit_matrix.h"
 #include "optimizer/sizing/allocation.h"
 #include "optimizer/sizing/map_shapes.h"
 
@@ -211,13 +211,9 @@ absl::StatusOr<ToleranceMap> MeetTolerance(const Readback& readback,
                                            const FitOptions& options) {
   const FitOptions squares = ToleranceOptions(options);
   if (absl::Status status = Validate(tolerance, rules, squares); !status.ok()) return status;
-  if (absl::Status status = ValidateLight(light); !status.ok()) return status;
-  const absl::StatusOr<Surfaces> surfaces =
-      FindSurfaces(readback, uint32_t{1} << light.shadow_bit, squares.samples);
-  if (!surfaces.ok()) return surfaces.status();
-  const absl::StatusOr<LightView> view = ViewLight(*surfaces, light, squares);
-  if (!view.ok()) return view.status();
-  return MeetTolerance(*view, tolerance, rules, squares);
+  return AskView(readback, light, squares, [&](const LightView& view) {
+    return MeetTolerance(view, tolerance, rules, squares);
+  });
 }
 
 absl::StatusOr<ToleranceMap> MeetTolerance(const LightView& view,
@@ -226,6 +222,7 @@ absl::StatusOr<ToleranceMap> MeetTolerance(const LightView& view,
                                            const FitOptions& options) {
   const FitOptions squares = ToleranceOptions(options);
   if (absl::Status status = Validate(tolerance, rules, squares); !status.ok()) return status;
+  if (absl::Status status = CheckServes(view, squares); !status.ok()) return status;
   if (!view.cover.ok()) return view.cover.status();
   const Light& light = *view.light;
   const absl::StatusOr<std::vector<Summary>> summaries =

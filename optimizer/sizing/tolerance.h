@@ -59,8 +59,8 @@ struct ToleranceMap {
 // put right, which a view must be made with.
 FitOptions ToleranceOptions(FitOptions options);
 
-// Errors are those of FitLight(), and InvalidArgument for a
-// tolerance or rules that cannot be used. A tolerance out of reach of the largest map is a result.
+// Errors are those of FitLight(), and InvalidArgument for a tolerance or rules that cannot be used.
+// A tolerance out of reach of the largest map is a result.
 absl::StatusOr<ToleranceMap> MeetTolerance(const LightView& view,
                                            const Tolerance& tolerance,
                                            const MapSizeRules& rules,

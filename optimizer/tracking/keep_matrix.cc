@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "geometry/homography.h"
-#include "optimizer/light_view.h"
+#include "optimizer/fit_matrix.h"
 #include "optimizer/search/axis_evaluator.h"
 
 namespace lightfit {

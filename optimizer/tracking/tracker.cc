@@ -13,6 +13,7 @@
 #include "geometry/homography.h"
 #include "geometry/map_size.h"
 #include "optimizer/fit.h"
+#include "optimizer/fit_matrix.h"
 #include "optimizer/light_view.h"
 #include "optimizer/search/axis_evaluator.h"
 #include "optimizer/search/axis_search.h"

@@ -66,13 +66,13 @@ struct DirectShot {
 DirectShot Together(const std::vector<ReadbackFile>& frames,
                     const Light& light,
                     const FitOptions& options) {
-  std::vector<Surfaces> receivers;
+  std::vector<Surfaces> surfaces;
   std::vector<Eigen::Vector3d> rays;
   const uint32_t mask = 1u << light.shadow_bit;
   DepthRange depth = {1e300, -1e300};
   for (const ReadbackFile& frame : frames) {
     const Readback readback = frame.View();
-    receivers.push_back(*FindSurfaces(readback, mask, options.samples));
+    surfaces.push_back(*FindSurfaces(readback, mask, options.samples));
     const AffineDepth affine_depth(readback.camera, readback.depth_kind);
     const Eigen::Matrix4d world_from_screen = readback.camera.WorldFromScreen();
     for (int y = 0; y < readback.height(); ++y) {
@@ -102,7 +102,7 @@ DirectShot Together(const std::vector<ReadbackFile>& frames,
   cover.depth = depth;
   const MetricWeights metric = WeightsOf(options.metric, options.along_edge_share);
   Eigen::Matrix<double, 6, 6> tensor = Eigen::Matrix<double, 6, 6>::Zero();
-  for (const Surfaces& frame : receivers) {
+  for (const Surfaces& frame : surfaces) {
     shot.samples.push_back(
         SelectSamples(frame, light, frame.options, cover.normalized_from_ray, true));
     const Summary summary = SummarizeSamples(shot.samples.back(), cover, metric);

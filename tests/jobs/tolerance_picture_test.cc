@@ -96,12 +96,12 @@ Reach ReachAtSamples(const Stage& stage,
   const FitOptions options;
   const Readback readback = stage.readback.View();
   const Eigen::Matrix4d screen_from_world = readback.camera.WorldFromScreen().inverse();
-  const absl::StatusOr<Surfaces> receivers =
+  const absl::StatusOr<Surfaces> surfaces =
       FindSurfaces(readback, uint32_t{1} << light.shadow_bit, options.samples);
-  EXPECT_TRUE(receivers.ok()) << receivers.status();
-  const Samples samples = SelectSamples(*receivers,
+  EXPECT_TRUE(surfaces.ok()) << surfaces.status();
+  const Samples samples = SelectSamples(*surfaces,
                                         light,
-                                        receivers->options,
+                                        surfaces->options,
                                         Eigen::Matrix3d::Identity(),
                                         /*with_edge_normals=*/false);
   Reach reach;

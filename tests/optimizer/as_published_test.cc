@@ -29,15 +29,14 @@ constexpr MapSize kMap = {512, 256};
 class Algorithm1 {
  public:
   Algorithm1(const Readback& readback, const Light& light) {
-    const Surfaces receivers =
+    const Surfaces surfaces =
         *FindSurfaces(readback, 1u << light.shadow_bit, FitOptions::AsPublished().samples);
-    samples_ =
-        SelectSamples(receivers, light, receivers.options, Eigen::Matrix3d::Identity(), false);
+    samples_ = SelectSamples(surfaces, light, surfaces.options, Eigen::Matrix3d::Identity(), false);
     const std::vector<Eigen::Vector3d> positions = *ReceiverPositions(readback);
     for (const Eigen::Vector3d& position : positions) {
       rays_.push_back(RayFromWorld(light) * position.homogeneous());
     }
-    const RayCover cover = *CoverReceivers(receivers, light, Cover::kReceivers);
+    const RayCover cover = *CoverReceivers(surfaces, light, Cover::kReceivers);
     mean_ray_ = cover.mean_ray;
     // The limit of the warp: w of a ray against w in the middle of the rays, both at depth 1.
     middle_ = cover.normalized_from_ray.inverse().col(2);

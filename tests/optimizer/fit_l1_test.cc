@@ -66,11 +66,11 @@ double Sum(const std::vector<double>& values) {
 double SlowTwin(const Readback& readback, const Light& light, const FitOptions& options) {
   constexpr int kRounds = 20;
   constexpr double kFloor = 0.02;  // of the mean footprint
-  const Surfaces receivers = *FindSurfaces(readback, 1u << light.shadow_bit, options.samples);
-  const RayCover cover = *CoverReceivers(receivers, light, options.cover);
+  const Surfaces surfaces = *FindSurfaces(readback, 1u << light.shadow_bit, options.samples);
+  const RayCover cover = *CoverReceivers(surfaces, light, options.cover);
   const MetricWeights metric = WeightsOf(options.metric, options.along_edge_share);
   Samples samples =
-      SelectSamples(receivers, light, receivers.options, cover.normalized_from_ray, true);
+      SelectSamples(surfaces, light, surfaces.options, cover.normalized_from_ray, true);
   AffineProblem problem;
   problem.map = kMap;
   problem.affine = options.affine;
@@ -150,10 +150,10 @@ TEST(FitLightL1, TraceHoldsEveryRoundAndTheBestIsReturned) {
 TEST(WeightsForL1, AreOneOverTheFootprintsDownToAFloor) {
   const TestScene scene(3, 3);
   for (const Light& light : scene.lights) {
-    const Surfaces receivers = *FindSurfaces(scene.View(), 1u << light.shadow_bit, {});
-    const RayCover cover = *CoverReceivers(receivers, light);
+    const Surfaces surfaces = *FindSurfaces(scene.View(), 1u << light.shadow_bit, {});
+    const RayCover cover = *CoverReceivers(surfaces, light);
     Samples samples =
-        SelectSamples(receivers, light, receivers.options, cover.normalized_from_ray, true);
+        SelectSamples(surfaces, light, surfaces.options, cover.normalized_from_ray, true);
     for (size_t i = 0; i < samples.size(); ++i) samples.weight[i] = 1.0 + 0.5 * (i % 3);
     const MetricWeights metric = WeightsOf(Metric::kL1AcrossEdge, 0.05);
     const Eigen::Matrix3d map_from_ray =

@@ -11,6 +11,7 @@
 #include "optimizer/evaluate.h"
 #include "optimizer/figures/foretell.h"
 #include "optimizer/fit.h"
+#include "optimizer/fit_matrix.h"
 #include "optimizer/light_view.h"
 #include "optimizer/search/global_search.h"
 #include "optimizer/search/polish.h"
@@ -49,9 +50,9 @@ TEST(Stop, AskedForBeforehandEndsEveryCallOnAReadback) {
   const FitOptions options;
   const absl::StatusOr<LightMatrix> fit = FitLight(readback, light, kMap);
   ASSERT_THAT(fit, IsOk());
-  const absl::StatusOr<Surfaces> receivers = FindSurfaces(readback, ~0u, options.samples);
-  ASSERT_THAT(receivers, IsOk());
-  const absl::StatusOr<LightView> prepared = ViewLight(*receivers, light, {});
+  const absl::StatusOr<Surfaces> surfaces = FindSurfaces(readback, ~0u, options.samples);
+  ASSERT_THAT(surfaces, IsOk());
+  const absl::StatusOr<LightView> prepared = ViewLight(*surfaces, light, {});
   ASSERT_THAT(prepared, IsOk());
   ASSERT_THAT(prepared->cover, IsOk());
   const Summary summary = SummaryOfView(*prepared, options);
@@ -75,10 +76,10 @@ TEST(Stop, AskedForBeforehandEndsEveryCallOnAReadback) {
   EXPECT_THAT(FindSurfaces(readback, ~0u, options.samples), is_stopped);
   const auto names_light = StatusIs(kCancelled, HasSubstr("light \"" + light.name + "\""));
   for (const Cover cover : {Cover::kReceivers, Cover::kShadowed}) {
-    EXPECT_THAT(CoverReceivers(*receivers, light, cover), names_light);
+    EXPECT_THAT(CoverReceivers(*surfaces, light, cover), names_light);
   }
-  EXPECT_THAT(ViewLight(*receivers, light, options), names_light);
-  const SearchInputs inputs = {light, summary, &prepared->samples, &*receivers};
+  EXPECT_THAT(ViewLight(*surfaces, light, options), names_light);
+  const SearchInputs inputs = {light, summary, &prepared->samples, &*surfaces};
   EXPECT_THAT(FitMatrix(inputs, kMap, options), names_light);
   EXPECT_THAT(MatrixOfMap(inputs, Eigen::Matrix3d::Identity(), kMap, options), names_light);
   for (const Search search : {Search::kFocused,

@@ -61,7 +61,9 @@ TEST(JudgeMatrix, ManyTexelsGiveTheTruthAndFewerGiveLessOfIt) {
     for (const int size : {4096, 256, 64, 16}) {
       const WrongPixels wrong = stage.Judged({size, size}).wrong;
       // Texels of a centimetre: a pixel or two on an edge.
-      if (size == 4096) EXPECT_LE(wrong.ideal, 20) << light.name;
+      if (size == 4096) {
+        EXPECT_LE(wrong.ideal, 20) << light.name;
+      }
       EXPECT_GT(wrong.ideal, previous) << light.name << " " << size;
       EXPECT_EQ(wrong.outside, 0);
       previous = wrong.ideal;

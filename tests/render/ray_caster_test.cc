@@ -42,7 +42,9 @@ void CompareWithBruteForce(uint64_t seed, double distance) {
     if (std::abs(next - behind) < 2e-3) continue;
     EXPECT_EQ(caster.IsBlocked(ray, behind), next < 1e300);
     EXPECT_FALSE(caster.IsBlocked(ray, 0.0, hit.distance - 1e-3));
-    if (next < 1e300) EXPECT_NEAR(caster.FirstHit(ray, behind).distance, next, 1e-9 * (1.0 + next));
+    if (next < 1e300) {
+      EXPECT_NEAR(caster.FirstHit(ray, behind).distance, next, 1e-9 * (1.0 + next));
+    }
   }
   EXPECT_GT(num_compared, 1000);
   EXPECT_GT(num_hits, 500);

@@ -174,7 +174,9 @@ TEST(Shapes, AreClosedAndOfTheirSize) {
       EXPECT_NEAR(bounds.min().y(), 0.0, 1e-6);
       EXPECT_NEAR(bounds.max().y(), 3.0, 1e-6);
       EXPECT_LE(bounds.max().x(), 1.0 + 1e-6);
-      if (profile == Profile::kCylinder) EXPECT_NEAR(bounds.max().x(), 1.0, 1e-6);
+      if (profile == Profile::kCylinder) {
+        EXPECT_NEAR(bounds.max().x(), 1.0, 1e-6);
+      }
     }
   }
   for (const auto& [around, through] : {std::pair{1, 0}, {2, 3}, {3, 2}, {2, 5}}) {

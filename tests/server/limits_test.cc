@@ -137,7 +137,7 @@ TEST(Limits, PackedMessagesAreRefusedUnopened) {
     const int64_t before = ResidentBytes();
     const grpc::Status status = server.stub().Fit(&context, request, &result);
     std::cout << status.error_code() << ": " << status.error_message() << "\n"
-              << (ResidentBytes() - before >> 20) << " MiB more than before\n";
+              << ((ResidentBytes() - before) >> 20) << " MiB more than before\n";
     EXPECT_EQ(status.error_code(), grpc::StatusCode::UNIMPLEMENTED) << status.error_message();
   }
 }

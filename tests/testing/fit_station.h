@@ -50,15 +50,15 @@ inline std::vector<FitStation> FitStations(int num_scenes,
   std::vector<FitStation> stations;
   for (int seed = 1; seed <= num_scenes; ++seed) {
     const TestScene scene(seed, 6);
-    const Surfaces receivers = *FindSurfaces(scene.View(), 0x3f, SquaredFootprints().samples);
+    const Surfaces surfaces = *FindSurfaces(scene.View(), 0x3f, SquaredFootprints().samples);
     for (const Light& light : scene.lights) {
-      const absl::StatusOr<RayCover> cover = CoverReceivers(receivers, light);
+      const absl::StatusOr<RayCover> cover = CoverReceivers(surfaces, light);
       EXPECT_TRUE(cover.ok()) << cover.status();
       if (!cover.ok()) continue;
       FitStation station;
       station.light = light;
       station.samples =
-          SelectSamples(receivers, light, receivers.options, cover->normalized_from_ray, false);
+          SelectSamples(surfaces, light, surfaces.options, cover->normalized_from_ray, false);
       if (station.samples.size() < 8) continue;
       station.summary = SummarizeSamples(station.samples, *cover, {0.0, 1.0});
       station.problem.map = {1024, 512};

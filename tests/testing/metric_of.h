@@ -29,9 +29,9 @@ inline double MetricOf(const LightMatrix& matrix,
                        const Readback& readback,
                        const Light& light,
                        const FitOptions& options) {
-  const Surfaces receivers = *FindSurfaces(readback, 1u << light.shadow_bit, options.samples);
+  const Surfaces surfaces = *FindSurfaces(readback, 1u << light.shadow_bit, options.samples);
   const Samples samples =
-      SelectSamples(receivers, light, receivers.options, Eigen::Matrix3d::Identity(), true);
+      SelectSamples(surfaces, light, surfaces.options, Eigen::Matrix3d::Identity(), true);
   const Eigen::Matrix3d map_from_ray = MapFromRayOf(matrix, light);
   const bool across =
       options.metric == Metric::kL2AcrossEdge || options.metric == Metric::kL1AcrossEdge;

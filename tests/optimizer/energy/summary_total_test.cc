@@ -42,10 +42,10 @@ struct TwoFrames {
 
 // The samples of one frame in the coordinates of any cover.
 Samples SamplesIn(const SyntheticReadback& frame, const Light& light, const RayCover& cover) {
-  const Surfaces receivers =
+  const Surfaces surfaces =
       *FindSurfaces(frame.View(), 1u << light.shadow_bit, testing::SquaredFootprints().samples);
   return SelectSamples(
-      receivers, light, receivers.options, cover.normalized_from_ray, /*with_edge_normals=*/false);
+      surfaces, light, surfaces.options, cover.normalized_from_ray, /*with_edge_normals=*/false);
 }
 
 TEST(MergeSummaries, EqualsSummaryOfTheUnion) {

@@ -32,27 +32,27 @@ using testing::StatusIs;
 constexpr auto kFailedPrecondition = absl::StatusCode::kFailedPrecondition;
 
 // From the light to all pixels, or to those that are shadowed: world units.
-std::vector<Eigen::Vector3d> RaysOf(const Surfaces& receivers, const Light& light, Cover which) {
-  const Readback& readback = receivers.readback;
-  const Matrix34d ray_from_screen = RayFromWorld(light) * receivers.world_from_screen;
+std::vector<Eigen::Vector3d> RaysOf(const Surfaces& surfaces, const Light& light, Cover which) {
+  const Readback& readback = surfaces.readback;
+  const Matrix34d ray_from_screen = RayFromWorld(light) * surfaces.world_from_screen;
   std::vector<Eigen::Vector3d> rays;
   for (int y = 0; y < readback.height(); ++y) {
     for (int x = 0; x < readback.width(); ++x) {
       const size_t pixel = static_cast<size_t>(y) * readback.width() + x;
       const double depth = readback.depth[pixel];
-      if (!receivers.affine_depth.IsSurface(depth)) continue;
+      if (!surfaces.affine_depth.IsSurface(depth)) continue;
       const bool is_shadowed = ((readback.shadow_bits[pixel] >> light.shadow_bit) & 1u) != 0;
       if (which == Cover::kShadowed && !is_shadowed) continue;
-      const double d = receivers.affine_depth.At(x, y, depth);
+      const double d = surfaces.affine_depth.At(x, y, depth);
       const Eigen::Vector4d screen(x + 0.5, y + 0.5, d, 1.0);
-      rays.push_back(ray_from_screen * screen / receivers.world_from_screen.row(3).dot(screen));
+      rays.push_back(ray_from_screen * screen / surfaces.world_from_screen.row(3).dot(screen));
     }
   }
   return rays;
 }
 
-bool BoxesSurround(const Surfaces& receivers, const DepthTiles& tiles, const Light& light) {
-  const Matrix34d ray_from_screen = RayFromWorld(light) * receivers.world_from_screen;
+bool BoxesSurround(const Surfaces& surfaces, const DepthTiles& tiles, const Light& light) {
+  const Matrix34d ray_from_screen = RayFromWorld(light) * surfaces.world_from_screen;
   std::vector<Eigen::Vector3d> corners;
   ForEachTile(tiles.grids[0], [&](const DepthTile& tile) {
     for (const Eigen::Vector4d& corner : Corners(tile)) corners.push_back(ray_from_screen * corner);
@@ -94,9 +94,9 @@ TEST(CoverCloseBy, IsThatOfAllRaysTakenAtOnce) {
     const Cover which = i % 2 == 0 ? Cover::kShadowed : Cover::kReceivers;
     if (i % 4 == 1) lamp.RemoveLitFloor();  // else that is all around
     SCOPED_TRACE(i);
-    const Surfaces receivers = *FindSurfaces(lamp.readback.View(), ~0u, {});
-    const absl::StatusOr<RayCover> cover = CoverReceivers(receivers, lamp.light, which);
-    const std::vector<Eigen::Vector3d> rays = RaysOf(receivers, lamp.light, which);
+    const Surfaces surfaces = *FindSurfaces(lamp.readback.View(), ~0u, {});
+    const absl::StatusOr<RayCover> cover = CoverReceivers(surfaces, lamp.light, which);
+    const std::vector<Eigen::Vector3d> rays = RaysOf(surfaces, lamp.light, which);
     const std::optional<Eigen::Vector3d> axis = FeasibleAxis(rays);
     if (!axis.has_value()) {
       EXPECT_THAT(cover, StatusIs(kFailedPrecondition, HasSubstr("light \"lamp\"")));
@@ -105,8 +105,8 @@ TEST(CoverCloseBy, IsThatOfAllRaysTakenAtOnce) {
     }
     ASSERT_THAT(cover, IsOk());
     const DepthTiles tiles = BuildDepthTiles(
-        receivers.readback, receivers.affine_depth, {uint32_t{1} << lamp.light.shadow_bit});
-    if (!BoxesSurround(receivers, tiles, lamp.light)) continue;  // cover_test.cc
+        surfaces.readback, surfaces.affine_depth, {uint32_t{1} << lamp.light.shadow_bit});
+    if (!BoxesSurround(surfaces, tiles, lamp.light)) continue;  // cover_test.cc
     ++num_one_by_one;
     EXPECT_THAT(Eigen::Vector3d(cover->normalized_from_ray.row(2)), MatrixNear(*axis, 1e-9));
     ExpectCoverOf(*cover, which, rays);
@@ -121,10 +121,10 @@ TEST(CoverCloseBy, LowestRayIsThatOfAllPixels) {
   for (int i = 0; i < 20; ++i) {
     HangingLamp lamp(random.Int(40, 150), random.Int(30, 90));
     lamp.light.position += random.LogUniform(1e-3, 10.0) * random.InCube(1.0);
-    const Surfaces receivers = *FindSurfaces(lamp.readback.View(), ~0u, {});
-    const Matrix34d ray_from_screen = RayFromWorld(lamp.light) * receivers.world_from_screen;
-    const CoveredSurfaces covered = {receivers, receivers.tiles};
-    const std::vector<Eigen::Vector3d> rays = RaysOf(receivers, lamp.light, Cover::kReceivers);
+    const Surfaces surfaces = *FindSurfaces(lamp.readback.View(), ~0u, {});
+    const Matrix34d ray_from_screen = RayFromWorld(lamp.light) * surfaces.world_from_screen;
+    const CoveredSurfaces covered = {surfaces, surfaces.tiles};
+    const std::vector<Eigen::Vector3d> rays = RaysOf(surfaces, lamp.light, Cover::kReceivers);
     const UnitRaySum sum = SumOfUnitRays(covered, ray_from_screen);
     EXPECT_EQ(sum.count, static_cast<int64_t>(rays.size()));
     for (int k = 0; k < 20; ++k) {
@@ -167,12 +167,12 @@ TEST(CoverCloseBy, TakesLittleMemory) {
   constexpr double kMostBytesPerPixel = 4.0;
   HangingLamp lamp(1280, 720);
   lamp.RemoveLitFloor();
-  const Surfaces receivers = *FindSurfaces(lamp.readback.View(), ~0u, {});
-  ASSERT_TRUE(BoxesSurround(receivers, receivers.tiles, lamp.light));
+  const Surfaces surfaces = *FindSurfaces(lamp.readback.View(), ~0u, {});
+  ASSERT_TRUE(BoxesSurround(surfaces, surfaces.tiles, lamp.light));
   PeakCounter counter;
   const ScratchScope scope(&counter);
   for (const Cover which : {Cover::kShadowed, Cover::kReceivers}) {
-    ASSERT_THAT(CoverReceivers(receivers, lamp.light, which), IsOk());
+    ASSERT_THAT(CoverReceivers(surfaces, lamp.light, which), IsOk());
     const double bytes_per_pixel =
         static_cast<double>(counter.peak_bytes()) / lamp.readback.depth.size();
     std::printf("%.2f bytes per pixel\n", bytes_per_pixel);

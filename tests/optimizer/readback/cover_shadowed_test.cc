@@ -54,7 +54,7 @@ void ForEachCover(const Check& check) {
   int num_covers = 0;
   for (uint64_t seed = 1; seed <= 8; ++seed) {
     const TestScene scene(seed, 6, 160, 100);
-    const Surfaces receivers = *FindSurfaces(scene.View(), 0x3f, {});
+    const Surfaces found = *FindSurfaces(scene.View(), 0x3f, {});
     for (const Light& light : scene.lights) {
       SCOPED_TRACE(light.name + ", seed " + std::to_string(seed));
       const std::vector<Surface> surfaces = SurfacesOf(scene.View(), light);
@@ -63,7 +63,7 @@ void ForEachCover(const Check& check) {
           })) {
         continue;
       }
-      const absl::StatusOr<RayCover> cover = CoverReceivers(receivers, light, Cover::kShadowed);
+      const absl::StatusOr<RayCover> cover = CoverReceivers(found, light, Cover::kShadowed);
       ASSERT_THAT(cover, IsOk());
       check(light, surfaces, *cover);
       ++num_covers;
@@ -145,10 +145,10 @@ TEST(CoverShadowed, WithoutAnAreaOfShadowEveryReceiverIsCovered) {
   readbacks[3].Cast(2, [](int x, int y) { return x < 30 && y == 9; });
   for (size_t i = 0; i < readbacks.size(); ++i) {
     SCOPED_TRACE(i);
-    const Surfaces receivers = *FindSurfaces(readbacks[i].View(), 1u << 2, {});
+    const Surfaces surfaces = *FindSurfaces(readbacks[i].View(), 1u << 2, {});
     for (const Light& light : {kSun, kLamp}) {
-      const auto all = CoverReceivers(receivers, light, Cover::kReceivers);
-      const auto shadowed = CoverReceivers(receivers, light, Cover::kShadowed);
+      const auto all = CoverReceivers(surfaces, light, Cover::kReceivers);
+      const auto shadowed = CoverReceivers(surfaces, light, Cover::kShadowed);
       ASSERT_THAT(all, IsOk());
       ASSERT_THAT(shadowed, IsOk());
       // A row of floats is straight to seven digits only.
@@ -160,10 +160,10 @@ TEST(CoverShadowed, WithoutAnAreaOfShadowEveryReceiverIsCovered) {
 TEST(CoverShadowed, OfAnImageAllInShadowIsThatOfAllReceivers) {
   PlaneReadback readback = FloorReadback();
   readback.Cast(2, [](int, int) { return true; });
-  const Surfaces receivers = *FindSurfaces(readback.View(), 1u << 2, {});
+  const Surfaces surfaces = *FindSurfaces(readback.View(), 1u << 2, {});
   for (const Light& light : {kSun, kLamp}) {
-    const auto all = CoverReceivers(receivers, light, Cover::kReceivers);
-    const auto shadowed = CoverReceivers(receivers, light, Cover::kShadowed);
+    const auto all = CoverReceivers(surfaces, light, Cover::kReceivers);
+    const auto shadowed = CoverReceivers(surfaces, light, Cover::kShadowed);
     ASSERT_THAT(all, IsOk());
     ASSERT_THAT(shadowed, IsOk());
     ExpectSameCover(*shadowed, *all);
@@ -186,10 +186,10 @@ TEST(CoverShadowed, LightAmongReceiversHasAMapWhereItsShadowsLieToOneSide) {
     });
   };
   shadow_from(26);
-  const Surfaces receivers = *FindSurfaces(readback.View(), 1u << 2, {});
-  EXPECT_THAT(CoverReceivers(receivers, lamp, Cover::kReceivers),
+  const Surfaces surfaces = *FindSurfaces(readback.View(), 1u << 2, {});
+  EXPECT_THAT(CoverReceivers(surfaces, lamp, Cover::kReceivers),
               StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("light \"lamp\"")));
-  const auto cover = CoverReceivers(receivers, lamp, Cover::kShadowed);
+  const auto cover = CoverReceivers(surfaces, lamp, Cover::kShadowed);
   ASSERT_THAT(cover, IsOk());
   EXPECT_GT(cover->depth.near, 0.0);
   FitOptions focused;

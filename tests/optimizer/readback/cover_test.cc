@@ -21,8 +21,8 @@ using testing::PlaneReadback;
 using testing::StatusIs;
 using testing::TestScene;
 
-std::vector<Eigen::Vector3d> WorldPositions(const Surfaces& receivers) {
-  return *ReceiverPositions(receivers.readback);
+std::vector<Eigen::Vector3d> WorldPositions(const Surfaces& surfaces) {
+  return *ReceiverPositions(surfaces.readback);
 }
 
 // The distance of a point outside the polygon, in units of rays; negative inside.
@@ -41,12 +41,12 @@ void ForEachCover(const Check& check) {
   int num_covers = 0;
   for (uint64_t seed = 1; seed <= 8; ++seed) {
     const TestScene scene(seed, 6, 160, 100);
-    const Surfaces receivers = *FindSurfaces(scene.View(), 0x3f, {});
+    const Surfaces surfaces = *FindSurfaces(scene.View(), 0x3f, {});
     for (const Light& light : scene.lights) {
-      const absl::StatusOr<RayCover> cover = CoverReceivers(receivers, light, Cover::kReceivers);
+      const absl::StatusOr<RayCover> cover = CoverReceivers(surfaces, light, Cover::kReceivers);
       ASSERT_THAT(cover, IsOk()) << light.name << ", seed " << seed;
       SCOPED_TRACE(light.name);
-      check(light, receivers, *cover);
+      check(light, surfaces, *cover);
       ++num_covers;
     }
   }
@@ -55,9 +55,9 @@ void ForEachCover(const Check& check) {
 
 // Tiles bound the hull and only some are looked into, yet it is that of all pixels.
 TEST(CoverReceivers, HullIsExactlyThatOfAllPixels) {
-  ForEachCover([](const Light& light, const Surfaces& receivers, const RayCover& cover) {
+  ForEachCover([](const Light& light, const Surfaces& surfaces, const RayCover& cover) {
     std::vector<Eigen::Vector2d> points;
-    for (const Eigen::Vector3d& position : WorldPositions(receivers)) {
+    for (const Eigen::Vector3d& position : WorldPositions(surfaces)) {
       const Eigen::Vector3d ray =
           cover.normalized_from_ray * (RayFromWorld(light) * position.homogeneous());
       EXPECT_GT(ray.z(), 0.0);
@@ -81,9 +81,9 @@ TEST(CoverReceivers, OriginIsStrictlyInsideTheHull) {
 }
 
 TEST(CoverReceivers, DepthBoundsHoldAndAreNotLoose) {
-  ForEachCover([](const Light& light, const Surfaces& receivers, const RayCover& cover) {
+  ForEachCover([](const Light& light, const Surfaces& surfaces, const RayCover& cover) {
     double near = 1e300, far = -1e300;
-    for (const Eigen::Vector3d& position : WorldPositions(receivers)) {
+    for (const Eigen::Vector3d& position : WorldPositions(surfaces)) {
       const Eigen::Vector3d ray = RayFromWorld(light) * position.homogeneous();
       const double depth = light.kind == Light::Kind::kPoint
                                ? cover.normalized_from_ray.row(2).dot(ray)
@@ -106,7 +106,7 @@ TEST(CoverReceivers, DepthBoundsHoldAndAreNotLoose) {
 
 // Tiles stand for their receivers: the mean is that of all unit rays to a share of the cone.
 TEST(CoverReceivers, MeanRayIsTheMeanOfUnitRays) {
-  ForEachCover([](const Light& light, const Surfaces& receivers, const RayCover& cover) {
+  ForEachCover([](const Light& light, const Surfaces& surfaces, const RayCover& cover) {
     EXPECT_NEAR(cover.mean_ray.norm(), 1.0, 1e-12);
     if (light.kind == Light::Kind::kDirectional) {
       EXPECT_EQ(cover.mean_ray, Eigen::Vector3d::UnitZ());
@@ -114,7 +114,7 @@ TEST(CoverReceivers, MeanRayIsTheMeanOfUnitRays) {
     }
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     double spread = 0.0;
-    const auto positions = WorldPositions(receivers);
+    const auto positions = WorldPositions(surfaces);
     for (const Eigen::Vector3d& position : positions) {
       mean += (RayFromWorld(light) * position.homogeneous()).normalized();
     }
@@ -136,8 +136,8 @@ TEST(CoverReceivers, LightAmongReceiversHasNoSingleMap) {
       *LookAtCamera({0.0, -30.0, 20.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, 0.9, 160, 100);
   const Light lamp = Light::Point("lamp", {0.0, 0.0, 0.01});
   const SyntheticReadback readback = Render(scene, camera, {lamp});
-  const Surfaces receivers = *FindSurfaces(readback.View(), 1u, {});
-  EXPECT_THAT(CoverReceivers(receivers, lamp),
+  const Surfaces surfaces = *FindSurfaces(readback.View(), 1u, {});
+  EXPECT_THAT(CoverReceivers(surfaces, lamp),
               StatusIs(absl::StatusCode::kFailedPrecondition,
                        AllOf(HasSubstr("light \"lamp\""), HasSubstr("dual paraboloid"))));
 }
@@ -149,10 +149,10 @@ TEST(CoverReceivers, LightInThePlaneOfItsReceiversHasNoMap) {
   camera.height = 30;
   camera.screen_from_camera << 32.0, 0.0, 20.0, 0.0, 32.0, 15.0, 0.0, 0.0, 1.0;
   const PlaneReadback readback(camera, DepthKind::kCameraZ, Eigen::Vector3d::UnitZ(), 4.0);
-  const Surfaces receivers = *FindSurfaces(readback.View(), 1u, {});
+  const Surfaces surfaces = *FindSurfaces(readback.View(), 1u, {});
   for (const Light& light :
        {Light::Directional("skim", {1.0, 0.5, 0.0}), Light::Point("skim", {20.0, 3.0, 4.0})}) {
-    EXPECT_THAT(CoverReceivers(receivers, light),
+    EXPECT_THAT(CoverReceivers(surfaces, light),
                 StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("light \"skim\"")));
   }
 }
@@ -162,10 +162,10 @@ TEST(CoverReceivers, OneReceiverHasNoMap) {
   const float centre = readback.depth[readback.Index(20, 15)];
   readback.depth.assign(readback.depth.size(), 1e10f);
   readback.depth[readback.Index(20, 15)] = centre;
-  const Surfaces receivers = *FindSurfaces(readback.View(), 1u, {});
+  const Surfaces surfaces = *FindSurfaces(readback.View(), 1u, {});
   for (const Light& light :
        {Light::Directional("sun", {0.1, 0.2, -1.0}), Light::Point("lamp", {1.0, 2.0, 5.0})}) {
-    EXPECT_THAT(CoverReceivers(receivers, light),
+    EXPECT_THAT(CoverReceivers(surfaces, light),
                 StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("no area")));
   }
 }

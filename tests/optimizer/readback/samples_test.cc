@@ -24,10 +24,10 @@ const Eigen::Matrix3d kLightSpace = Eigen::Matrix3d::Identity();
 SampleCounts CountSamples(const PlaneReadback& readback,
                           const Light& light,
                           const SampleOptions& options = FitOptions::AsPublished().samples) {
-  const absl::StatusOr<Surfaces> receivers =
+  const absl::StatusOr<Surfaces> surfaces =
       FindSurfaces(readback.View(), 1u << light.shadow_bit, options);
-  EXPECT_THAT(receivers, IsOk());
-  const Samples samples = SelectSamples(*receivers, light, receivers->options, kLightSpace, false);
+  EXPECT_THAT(surfaces, IsOk());
+  const Samples samples = SelectSamples(*surfaces, light, surfaces->options, kLightSpace, false);
   EXPECT_EQ(samples.counts.used, static_cast<int64_t>(samples.size()));
   const SampleCounts& c = samples.counts;
   EXPECT_EQ(c.used, c.candidates - c.background - c.discontinuity - c.facing_away - c.edge_on);
@@ -172,8 +172,8 @@ TEST(SelectSamples, CountsSurfacesEdgeOnToTheEye) {
 
 TEST(SelectSamples, LightAtAReceiverIsEdgeOnThere) {
   const PlaneReadback readback = FloorWithVerticalEdge();
-  const Surfaces receivers = *FindSurfaces(readback.View(), 1u, {});
-  const Light lamp = Light::Point("lamp", receivers.boundary[5].position);
+  const Surfaces surfaces = *FindSurfaces(readback.View(), 1u, {});
+  const Light lamp = Light::Point("lamp", surfaces.boundary[5].position);
   const SampleCounts counts = CountSamples(readback, lamp);
   EXPECT_EQ(counts.used, 0);
   EXPECT_EQ(counts.edge_on + counts.facing_away, kNumCandidates);
@@ -191,13 +191,13 @@ TEST(SelectSamples, LooksAtItsOwnBitOnly) {
 
 TEST(SelectSamples, RaysPointFromTheLightToTheReceivers) {
   const PlaneReadback readback = FloorWithVerticalEdge();
-  const Surfaces receivers = *FindSurfaces(readback.View(), 1u, {});
+  const Surfaces surfaces = *FindSurfaces(readback.View(), 1u, {});
   for (const Light& light : {kSun, Light::Point("lamp", {1.0, 2.0, 4.0})}) {
-    const Samples samples = SelectSamples(receivers, light, receivers.options, kLightSpace, false);
-    ASSERT_EQ(samples.size(), receivers.boundary.size());
+    const Samples samples = SelectSamples(surfaces, light, surfaces.options, kLightSpace, false);
+    ASSERT_EQ(samples.size(), surfaces.boundary.size());
     for (size_t i = 0; i < samples.size(); ++i) {
       const Eigen::Vector3d expected =
-          RayFromWorld(light) * receivers.boundary[i].position.homogeneous();
+          RayFromWorld(light) * surfaces.boundary[i].position.homogeneous();
       EXPECT_LT(testing::HomogeneousError(samples.At(i).X, expected), 1e-6);
     }
   }

@@ -133,11 +133,11 @@ TEST(SurfaceNormal, IsThePlanesNormalTowardsTheEye) {
 
 TEST(FindSurfaces, TilesAreThoseOfAllReceivers) {
   const testing::TestScene scene(2, 1, 323, 177);
-  const Surfaces receivers = *FindSurfaces(scene.View(), 1u, {});
-  EXPECT_EQ(receivers.counts[0].invalid_depth, 0);
-  EXPECT_EQ(receivers.tiles.filter.shadow_mask, 0u);
-  EXPECT_EQ(receivers.tiles.num_surfaces, receivers.counts[0].receivers);
-  EXPECT_EQ(receivers.tiles.num_surfaces + receivers.tiles.num_background, 323 * 177);
+  const Surfaces surfaces = *FindSurfaces(scene.View(), 1u, {});
+  EXPECT_EQ(surfaces.counts[0].invalid_depth, 0);
+  EXPECT_EQ(surfaces.tiles.filter.shadow_mask, 0u);
+  EXPECT_EQ(surfaces.tiles.num_surfaces, surfaces.counts[0].receivers);
+  EXPECT_EQ(surfaces.tiles.num_surfaces + surfaces.tiles.num_background, 323 * 177);
 }
 
 // Outlines are marked, so that one pass serves samples with them and without: those are the pixels
@@ -191,9 +191,9 @@ TEST(FindSurfaces, BoundaryIsTheSameWhateverOtherLightsAreAskedFor) {
 TEST(FindSurfaces, OutermostPixelsAreNeverBoundary) {
   PlaneReadback readback = FloorReadback();
   readback.Cast(0, [](int x, int y) { return (x + y) % 2 == 0; });
-  const Surfaces receivers = *FindSurfaces(readback.View(), 1u, {});
-  EXPECT_EQ(receivers.counts[0].candidates, 38 * 28);
-  for (const BoundaryPixel& pixel : receivers.boundary) {
+  const Surfaces surfaces = *FindSurfaces(readback.View(), 1u, {});
+  EXPECT_EQ(surfaces.counts[0].candidates, 38 * 28);
+  for (const BoundaryPixel& pixel : surfaces.boundary) {
     EXPECT_GE(pixel.x, 1);
     EXPECT_GE(pixel.y, 1);
     EXPECT_LE(pixel.x, 38);
@@ -205,9 +205,9 @@ TEST(FindSurfaces, ImagesWithoutInnerPixelsHaveNoBoundary) {
   for (const auto& [width, height] : {std::pair(1, 1), std::pair(2, 2), std::pair(40, 1)}) {
     PlaneReadback readback = FloorReadback(testing::FloorCamera(width, height));
     readback.Cast(0, [](int x, int) { return x % 2 == 0; });
-    const absl::StatusOr<Surfaces> receivers = FindSurfaces(readback.View(), 1u, {});
-    ASSERT_THAT(receivers, IsOk());
-    EXPECT_TRUE(receivers->boundary.empty());
+    const absl::StatusOr<Surfaces> surfaces = FindSurfaces(readback.View(), 1u, {});
+    ASSERT_THAT(surfaces, IsOk());
+    EXPECT_TRUE(surfaces->boundary.empty());
   }
 }
 

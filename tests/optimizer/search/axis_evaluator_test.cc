@@ -28,14 +28,14 @@ TEST(SampleEvaluator, GivesTheSameFromReceiversAsFromTheirRays) {
     SCOPED_TRACE(width);
     PlaneReadback readback = FloorReadback(FloorCamera(width, width * 9 / 16));
     readback.Cast(0, [width](int x, int y) { return x > width / 3 && y > width / 4; });
-    const Surfaces receivers = *FindSurfaces(readback.View(), 1u, options.samples);
-    const absl::StatusOr<LightView> prepared = ViewLight(receivers, lamp, options);
+    const Surfaces surfaces = *FindSurfaces(readback.View(), 1u, options.samples);
+    const absl::StatusOr<LightView> prepared = ViewLight(surfaces, lamp, options);
     ASSERT_THAT(prepared, IsOk());
     const Samples& samples = prepared->samples;
     std::vector<Eigen::Vector3d> rays;
     ForEachSurface(
-        receivers.readback,
-        receivers.affine_depth,
+        surfaces.readback,
+        surfaces.affine_depth,
         {},
         {0, 0, readback.camera.width, readback.camera.height, 0.0, 0.0, 1},
         [&](int x, int y, double d) {
@@ -47,7 +47,7 @@ TEST(SampleEvaluator, GivesTheSameFromReceiversAsFromTheirRays) {
     problem.affine = options.affine;
     problem.normalized_from_ray = prepared->normalized_from_ray();
     const MetricWeights metric = WeightsOf(options.metric, options.along_edge_share);
-    SampleEvaluator from_receivers(samples, receivers, metric, problem, options.min_w);
+    SampleEvaluator from_receivers(samples, surfaces, metric, problem, options.min_w);
     SampleEvaluator from_rays(samples, rays, metric, problem, options.min_w);
     int num_usable = 0;
     for (int i = 0; i < 6; ++i) {

@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "optimizer/fit.h"
+#include "optimizer/fit_matrix.h"
 #include "optimizer/light_view.h"
 #include "optimizer/search/axis_search.h"
 #include "optimizer/sizing/map_sizes.h"

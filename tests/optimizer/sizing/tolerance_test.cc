@@ -12,6 +12,7 @@
 #include "optimizer/energy/footprint.h"
 #include "optimizer/evaluate.h"
 #include "optimizer/fit.h"
+#include "optimizer/fit_matrix.h"
 #include "optimizer/light_view.h"
 #include "optimizer/readback/samples.h"
 #include "optimizer/readback/surfaces.h"
@@ -34,13 +35,13 @@ std::vector<double> SortedFootprints(const TestScene& scene,
                                      const Light& light,
                                      const LightMatrix& matrix) {
   const FitOptions options;
-  const absl::StatusOr<Surfaces> receivers =
+  const absl::StatusOr<Surfaces> surfaces =
       FindSurfaces(scene.View(), uint32_t{1} << light.shadow_bit, options.samples);
   const absl::StatusOr<Eigen::Matrix3d> map_from_ray = MapFromRay(matrix.map_from_world, light);
-  EXPECT_TRUE(receivers.ok() && map_from_ray.ok());
-  const Samples samples = SelectSamples(*receivers,
+  EXPECT_TRUE(surfaces.ok() && map_from_ray.ok());
+  const Samples samples = SelectSamples(*surfaces,
                                         light,
-                                        receivers->options,
+                                        surfaces->options,
                                         Eigen::Matrix3d::Identity(),
                                         /*with_edge_normals=*/false);
   std::vector<double> footprints;
