@@ -13,7 +13,8 @@ namespace lightfit {
 absl::StatusOr<Figures> EvaluateMatrix(const LightView& view,
                                        const Eigen::Matrix4d& map_from_world,
                                        MapSize map,
-                                       const FitOptions& options) {
+                                       const FitOptions& options,
+                                       std::optional<Border> border) {
   const Light& light = *view.light;
   if (absl::Status status = CheckServes(view, options); !status.ok()) return status;
   const absl::StatusOr<Eigen::Matrix3d> map_from_ray = MapFromRay(map_from_world, light);
@@ -33,8 +34,12 @@ absl::StatusOr<Figures> EvaluateMatrix(const LightView& view,
     return absl::FailedPreconditionError(
         absl::StrFormat("light \"%s\": the matrix is singular at the samples", light.name));
   }
-  const absl::StatusOr<double> wrong_share =
-      ForetellWrongShare(view.surfaces->readback, light, map_from_world, map, options.samples);
+  const absl::StatusOr<double> wrong_share = ForetellWrongShare(view.surfaces->readback,
+                                                                light,
+                                                                map_from_world,
+                                                                map,
+                                                                options.samples,
+                                                                border.value_or(view.border));
   if (!wrong_share.ok()) return wrong_share.status();
   figures.wrong_share = *wrong_share;
   return figures;

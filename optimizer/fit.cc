@@ -7,6 +7,7 @@
 #include "base/stop.h"
 #include "geometry/homography.h"
 #include "geometry/map_size.h"
+#include "optimizer/choose_fit.h"
 #include "optimizer/energy/l1_weights.h"
 #include "optimizer/fit_matrix.h"
 #include "optimizer/readback/surfaces.h"
@@ -18,12 +19,12 @@ namespace {
 // For the L1 metrics gives the samples the weights they have in a map, and sums them up.
 Summary WeighedIn(const Eigen::Matrix3d& map_from_normalized,
                   Samples samples,
-                  const RayCover& cover,
-                  const MetricWeights& metric) {
-  L1Weights l1 = WeightsForL1(samples, metric, map_from_normalized);
+                  const Summary& unweighed) {
+  L1Weights l1 = WeightsForL1(samples, unweighed.metric, map_from_normalized);
   samples.weight = std::move(l1.weights);
-  Summary summary = SummarizeSamples(samples, cover, metric);
+  Summary summary = SummarizeSamples(samples, unweighed.cover, unweighed.metric);
   summary.footprint_sum = l1.floored_sum;
+  summary.facing = unweighed.facing;
   return summary;
 }
 
@@ -55,12 +56,7 @@ LightMatrices FitLights(const Surfaces& surfaces,
                         const FitOptions& options) {
   LightMatrices results(lights.size());
   for (size_t i = 0; i < lights.size(); ++i) {
-    const absl::StatusOr<LightView> view = ViewLight(surfaces, lights[i], options);
-    if (view.ok()) {
-      results[i] = FitLight(*view, map, options);
-    } else {
-      results[i] = view.status();
-    }
+    results[i] = FitLight(surfaces, lights[i], map, options);
   }
   return results;
 }
@@ -70,6 +66,17 @@ absl::StatusOr<LightMatrix> FitLight(const Readback& readback,
                                      MapSize map,
                                      const FitOptions& options) {
   return std::move(FitLights(readback, absl::MakeConstSpan(&light, 1), map, options).front());
+}
+
+absl::StatusOr<LightMatrix> FitLight(const Surfaces& surfaces,
+                                     const Light& light,
+                                     MapSize map,
+                                     const FitOptions& options) {
+  if (options.border == BorderChoice::kAutomatic) {
+    return FitByForecast(surfaces, light, map, options);
+  }
+  const absl::StatusOr<LightView> view = ViewLight(surfaces, light, options);
+  return view.ok() ? FitLight(*view, map, options) : view.status();
 }
 
 absl::StatusOr<LightMatrix> FitLight(const LightView& view,
@@ -104,7 +111,7 @@ absl::StatusOr<Summary> Summarize(const LightView& view, const FitOptions& optio
     const absl::StatusOr<SearchResult> result =
         SearchAxis({light, summary, &view.samples, view.surfaces}, kAnySquare, options);
     if (!result.ok()) return result.status();
-    summary = WeighedIn(result->fit.map_from_ray, view.samples, *view.cover, summary.metric);
+    summary = WeighedIn(result->fit.map_from_ray, view.samples, summary);
   }
   if (absl::Status status = CheckStop(light); !status.ok()) return status;
   return summary;
@@ -136,8 +143,12 @@ absl::StatusOr<Summary> SummarizeInMap(const LightView& view,
   Samples samples = SamplesInFront(view.samples, map_from_normalized.row(2));
   if (absl::Status status = CheckStop(light); !status.ok()) return status;
   samples.counts.used = static_cast<int64_t>(samples.size());
-  if (samples.size() == 0) return SummarizeSamples(samples, *view.cover, summary.metric);
-  summary = WeighedIn(map_from_normalized, std::move(samples), *view.cover, summary.metric);
+  if (samples.size() == 0) {
+    Summary cover_only = SummarizeSamples(samples, *view.cover, summary.metric);
+    cover_only.facing = summary.facing;
+    return cover_only;
+  }
+  summary = WeighedIn(map_from_normalized, std::move(samples), summary);
   if (absl::Status status = CheckStop(light); !status.ok()) return status;
   return summary;
 }

@@ -31,7 +31,7 @@ namespace lightfit {
 
 // Raised whenever a fit of the same input may come out otherwise, so that who keeps results knows
 // which to compute anew.
-inline constexpr int kFitRevision = 1;
+inline constexpr int kFitRevision = 2;
 
 // The matrix for one light.
 absl::StatusOr<LightMatrix> FitLight(const Readback& readback,
@@ -76,11 +76,16 @@ absl::StatusOr<Summary> SummarizeInMap(const Readback& readback,
                                        const FitOptions& options = {});
 
 // All of these once more for who asks several things of one read-back: of its surfaces, or of a
-// light's view in them, made with the same options. Bit for bit the same.
+// light's view in them, made with the same options. Bit for bit the same, but that a view has one
+// border, and BorderChoice::kAutomatic means that one.
 LightMatrices FitLights(const Surfaces& surfaces,
                         absl::Span<const Light> lights,
                         MapSize map,
                         const FitOptions& options = {});
+absl::StatusOr<LightMatrix> FitLight(const Surfaces& surfaces,
+                                     const Light& light,
+                                     MapSize map,
+                                     const FitOptions& options = {});
 absl::StatusOr<LightMatrix> FitLight(const LightView& view,
                                      MapSize map,
                                      const FitOptions& options = {});

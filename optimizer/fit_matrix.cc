@@ -15,29 +15,6 @@ namespace lightfit {
 
 namespace {
 
-absl::Status TooFewSamplesError(const Light& light, const SampleCounts& counts, int min_samples) {
-  if (counts.candidates == 0) {
-    return absl::FailedPreconditionError(absl::StrFormat(
-        "light \"%s\": no shadow boundary among %d receivers: all are lit, or all are shadowed, so "
-        "there is nothing to fit. Leave the light out, or take its focused map "
-        "(options.search = kFocused)",
-        light.name,
-        counts.receivers));
-  }
-  return absl::FailedPreconditionError(absl::StrFormat(
-      "light \"%s\": %d usable samples, want at least %d; of %d boundary pixels %d are background, "
-      "%d at depth discontinuities, %d face away from the light, %d are edge-on. Use a larger "
-      "read-back, or take the focused map (options.search = kFocused)",
-      light.name,
-      counts.used,
-      min_samples,
-      counts.candidates,
-      counts.background,
-      counts.discontinuity,
-      counts.facing_away,
-      counts.edge_on));
-}
-
 // The largest and smallest w over the hull, where w is 1 at the origin of the rays.
 std::pair<double, double> RangeOfW(const Polygon& hull, const Eigen::Vector3d& axis) {
   std::pair<double, double> range = {std::numeric_limits<double>::infinity(), 0.0};
@@ -95,6 +72,8 @@ absl::StatusOr<LightMatrix> LayMatrix(const SearchInputs& inputs,
   LightMatrix matrix;
   matrix.light_name = light.name;
   matrix.map = map;
+  matrix.border = summary.cover.border;
+  matrix.facing = summary.facing;
   const absl::StatusOr<Eigen::Matrix4d> map_from_world =
       FinishMap(map_from_normalized * summary.cover.normalized_from_ray,
                 RayFromWorld(light),
@@ -122,8 +101,14 @@ absl::StatusOr<LightMatrix> FitMatrix(const SearchInputs& inputs,
   const Summary& summary = inputs.summary;
   const Light& light = inputs.light;
   if (absl::Status status = CheckStop(light); !status.ok()) return status;
-  if (options.search != Search::kFocused && summary.counts.used < options.samples.min_samples) {
-    return TooFewSamplesError(light, summary.counts, options.samples.min_samples);
+  const bool searches = options.search != Search::kFocused;
+  if (searches && summary.counts.used < options.samples.min_samples) {
+    FitOptions focused = options;
+    focused.search = Search::kFocused;
+    focused.affine = Affine::kMinAreaRectangle;
+    absl::StatusOr<LightMatrix> matrix = FitMatrix(inputs, map, focused, effort);
+    if (matrix.ok()) matrix->search.stop_reason = StopReason::kTooFewSamples;
+    return matrix;
   }
   absl::StatusOr<SearchResult> result = SearchAxis(inputs, map, options, effort);
   if (!result.ok()) return result.status();
@@ -134,8 +119,7 @@ absl::StatusOr<LightMatrix> FitMatrix(const SearchInputs& inputs,
   matrix->figures.energy = result->fit.energy;
   matrix->search = std::move(result->report);
   const double w_min = RangeOfW(summary.cover.hull, map_from_normalized.row(2)).first;
-  const bool searched = options.search != Search::kFocused;
-  if (searched && w_min <= options.min_w * (1.0 + 1e-3)) {
+  if (searches && w_min <= options.min_w * (1.0 + 1e-3)) {
     matrix->search.stop_reason = StopReason::kAxisAtLimit;
   }
   return matrix;

@@ -7,8 +7,10 @@
 #include <string>
 
 #include "base/scratch.h"
+#include "geometry/border.h"
 #include "geometry/map_size.h"
 #include "optimizer/figures/figures.h"
+#include "optimizer/readback/readback.h"
 #include "optimizer/search/search_result.h"
 
 namespace lightfit {
@@ -16,6 +18,12 @@ namespace lightfit {
 struct LightMatrix {
   ScratchString light_name;
   MapSize map;
+
+  // What a look-up outside the map must find. The matrix is of no use with the other.
+  Border border = Border::kLit;
+
+  // How the fit knew which surfaces face the light.
+  FacingSource facing = FacingSource::kGuessed;
 
   // Homogeneous (u w, v w, z w, w) of a world point: u, v in texels, (0, 0) the first texel's
   // corner, z in [0, 1] over the receivers, w > 0 on every receiver. Column vectors. In the middle

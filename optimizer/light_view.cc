@@ -10,6 +10,14 @@ namespace lightfit {
 absl::StatusOr<LightView> ViewLight(const Surfaces& surfaces,
                                     const Light& light,
                                     const FitOptions& options) {
+  const bool is_dark = options.border == BorderChoice::kDark;
+  return ViewLight(surfaces, light, is_dark ? Border::kDark : Border::kLit, options);
+}
+
+absl::StatusOr<LightView> ViewLight(const Surfaces& surfaces,
+                                    const Light& light,
+                                    Border border,
+                                    const FitOptions& options) {
   if (absl::Status status = ValidateLight(light); !status.ok()) return status;
   if (options.samples.max_depth_bend != surfaces.options.max_depth_bend ||
       options.samples.depth_noise != surfaces.options.depth_noise) {
@@ -24,14 +32,20 @@ absl::StatusOr<LightView> ViewLight(const Surfaces& surfaces,
   LightView view = {&surfaces,
                     &light,
                     options.samples,
-                    CoverReceivers(surfaces, light, options.cover),
+                    border,
+                    CoverReceivers(surfaces, light, options.cover, border, options.use_fine_cover),
                     Samples()};
   const MetricWeights metric = WeightsOf(options.metric, options.along_edge_share);
-  view.samples = SelectSamples(surfaces,
-                               light,
-                               options.samples,
-                               view.normalized_from_ray(),
-                               /*with_edge_normals=*/metric.across_edge > 0.0);
+  view.samples =
+      SelectSamples(surfaces,
+                    light,
+                    options.samples,
+                    view.normalized_from_ray(),
+                    /*with_edge_normals=*/metric.across_edge > 0.0,
+                    border == Border::kDark ? FacingSource::kGiven : FacingSource::kGuessed);
+  if (border == Border::kDark && options.cover == Cover::kShadowed && view.cover.ok()) {
+    view.samples = SamplesServed(view.samples);
+  }
   if (absl::Status status = CheckStop(light); !status.ok()) return status;
   return view;
 }
@@ -42,16 +56,23 @@ absl::Status CheckServes(const LightView& view, const FitOptions& options) {
       metric.across_edge > 0.0 && view.samples.size() > 0 && !view.samples.has_edge_normals();
   SampleOptions chosen = view.sample_options;
   chosen.min_samples = options.samples.min_samples;  // counted later
-  if (!lacks_normals && chosen == options.samples) return absl::OkStatus();
+  const bool other_border =
+      options.border != BorderChoice::kAutomatic &&
+      (options.border == BorderChoice::kDark) != (view.border == Border::kDark);
+  if (!lacks_normals && !other_border && chosen == options.samples) return absl::OkStatus();
   return absl::InvalidArgumentError(absl::StrFormat(
       "light \"%s\": the view was made with other %s; make one with the same options (ViewLight)",
       view.light->name,
-      lacks_normals ? "options.metric, which does not look across edges" : "options.samples"));
+      other_border    ? "options.border"
+      : lacks_normals ? "options.metric, which does not look across edges"
+                      : "options.samples"));
 }
 
 Summary SummaryOfView(const LightView& view, const FitOptions& options) {
-  return SummarizeSamples(
+  Summary summary = SummarizeSamples(
       view.samples, *view.cover, WeightsOf(options.metric, options.along_edge_share));
+  summary.facing = view.facing();
+  return summary;
 }
 
 }  // namespace lightfit

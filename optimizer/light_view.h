@@ -19,11 +19,16 @@
 
 namespace lightfit {
 
+// For a dark border samples are told from terminators by the third state, where it is known. For a
+// lit one they are by the depth's normals even so: those that these take for edges by mistake are
+// where dark surfaces meet ones turned away, which is where wrong pixels are in rooms that are
+// mostly dark, and without them a map would serve its few lit patches alone (docs/defaults.md).
 struct LightView {
   const Surfaces* surfaces;  // must outlive the view, as must the light
   const Light* light;
 
   SampleOptions sample_options;  // that `samples` were chosen by
+  Border border;                 // that `cover` and `samples` are for
 
   // What the map must have room for, or why no single map has: FailedPrecondition as
   // CoverReceivers(). Somebody's matrix can be judged all the same.
@@ -34,6 +39,8 @@ struct LightView {
   // none. They have edge normals where FitOptions::metric counts what lies across edges.
   Samples samples;
 
+  FacingSource facing() const { return surfaces->readback.FacingOf(light->shadow_bit); }
+
   Eigen::Matrix3d normalized_from_ray() const {
     return cover.ok() ? cover->normalized_from_ray : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
   }
@@ -41,11 +48,16 @@ struct LightView {
 
 // Here and below: CancelledError once a StopScope says so.
 
-// Of `options` count `samples`, `cover` and whether `metric` needs edge normals. InvalidArgument
+// Of `options` count `samples`, `cover`, `border` (lit where it is kAutomatic: ViewLight(...,
+// Border)) and whether `metric` needs edge normals. InvalidArgument
 // for a light that cannot be used, or samples that the surfaces were not found for
 // (FindSurfaces()).
 absl::StatusOr<LightView> ViewLight(const Surfaces& surfaces,
                                     const Light& light,
+                                    const FitOptions& options);
+absl::StatusOr<LightView> ViewLight(const Surfaces& surfaces,
+                                    const Light& light,
+                                    Border border,
                                     const FitOptions& options);
 
 // InvalidArgument for options that the view was not made with, but for the cover and min_samples:

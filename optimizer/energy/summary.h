@@ -60,6 +60,7 @@ struct Summary {
   // where they are all in proportion (Cauchy & Schwarz). Else 0.
   double footprint_sum = 0.0;
   SampleCounts counts;
+  FacingSource facing = FacingSource::kGuessed;  // of every read-back that is in it
   RayCover cover;
 };
 

@@ -132,6 +132,7 @@ SampleCounts AddCounts(const SampleCounts& a, const SampleCounts& b) {
   sum.discontinuity = a.discontinuity + b.discontinuity;
   sum.facing_away = a.facing_away + b.facing_away;
   sum.edge_on = a.edge_on + b.edge_on;
+  sum.beyond_map = a.beyond_map + b.beyond_map;
   sum.used = a.used + b.used;
   return sum;
 }
@@ -173,6 +174,8 @@ SummaryTotal TotalOf(const Summary& summary, const Light& light) {
   SummaryTotal total;
   total.light = light;
   total.metric = summary.metric;
+  total.border = cover.border;
+  total.facing = summary.facing;
   total.is_l1 = summary.footprint_sum > 0.0;
   total.num_frames = 1;
   const WideMatrix<3> normalized_from_ray = ToWide<3>(cover.normalized_from_ray);
@@ -184,7 +187,7 @@ SummaryTotal TotalOf(const Summary& summary, const Light& light) {
   total.total_weight.Add(summary.total_weight);
   total.footprint_sum.Add(summary.footprint_sum);
   total.counts = summary.counts;
-  if (cover.nothing_shadowed) return total;
+  if (cover.nothing_to_cover) return total;
   const bool is_point = light.kind == Light::Kind::kPoint;
   Eigen::Matrix3d rounded_ray_from_normalized;
   for (int i = 0; i < 9; ++i) {
@@ -219,6 +222,12 @@ absl::Status AddToTotal(const SummaryTotal& other, SummaryTotal* total) {
                         "frames with the same FitOptions",
                         total->light.name));
   }
+  if (other.border != total->border) {
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "light \"%s\": summaries for a lit and for a dark border do not add: summarise all frames "
+        "with the same FitOptions",
+        total->light.name));
+  }
   const bool both_have_samples = other.counts.used > 0 && total->counts.used > 0;
   if (both_have_samples && other.is_l1 != total->is_l1) {
     return absl::InvalidArgumentError(absl::StrFormat(
@@ -227,6 +236,7 @@ absl::Status AddToTotal(const SummaryTotal& other, SummaryTotal* total) {
         total->light.name));
   }
   total->is_l1 = total->is_l1 || other.is_l1;
+  if (other.facing == FacingSource::kGuessed) total->facing = FacingSource::kGuessed;
   total->num_frames += other.num_frames;
   for (int i = 0; i < 36; ++i) total->tensor[i].Add(other.tensor[i]);
   total->total_weight.Add(other.total_weight);
@@ -257,7 +267,9 @@ absl::StatusOr<Summary> SummaryOfTotal(const SummaryTotal& total) {
       total.mean_ray[0].Value(), total.mean_ray[1].Value(), total.mean_ray[2].Value());
   absl::StatusOr<RayCover> cover = CoverRays(total.hull, total.depth, mean_ray, total.light);
   if (!cover.ok()) return cover.status();
+  cover->border = total.border;
   Summary summary;
+  summary.facing = total.facing;
   summary.metric = total.metric;
   summary.total_weight = total.total_weight.Value();
   summary.footprint_sum = total.footprint_sum.Value();

@@ -28,6 +28,8 @@ namespace lightfit {
 struct SummaryTotal {
   Light light;  // shadow_bit does not matter
   MetricWeights metric;
+  Border border = Border::kLit;                  // that the covers are for
+  FacingSource facing = FacingSource::kGuessed;  // given in every frame, or guessed in some
   bool is_l1 = false;  // the samples weigh one over their footprints; false without samples
   int64_t num_frames = 0;
 
@@ -38,7 +40,7 @@ struct SummaryTotal {
 
   // ExtremeRays() of all frames' hulls; light space, unit for a point light, third component 1 for
   // a directional one. Empty, and `surrounded`, when no single map covers the rays of all frames;
-  // frames in which nothing is shadowed (RayCover::nothing_shadowed) have no part in it.
+  // frames in which nothing is shadowed (RayCover::nothing_to_cover) have no part in it.
   std::vector<Eigen::Vector3d> hull;
   bool surrounded = false;
 
@@ -53,8 +55,8 @@ struct SummaryTotal {
 // A frame's summary as a total of one.
 SummaryTotal TotalOf(const Summary& summary, const Light& light);
 
-// InvalidArgument, and `total` as it was, when light or metric are others. Equal totals come out of
-// equal frames however they are grouped.
+// InvalidArgument, and `total` as it was, when light, metric or border are others. Equal totals
+// come out of equal frames however they are grouped.
 absl::Status AddToTotal(const SummaryTotal& other, SummaryTotal* total);
 
 // What Fit() takes: sums, hull and depths of all frames. For a point light the range of depth is

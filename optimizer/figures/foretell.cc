@@ -2,99 +2,46 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
-#include "base/scratch.h"
-#include "base/stop.h"
 #include "geometry/affine_depth.h"
+#include "optimizer/figures/foretell_by_bits.h"
+#include "optimizer/figures/foretell_by_state.h"
 #include "optimizer/figures/pixel_footprint.h"
+#include "optimizer/readback/fine_cover.h"
 
 namespace lightfit {
 
 namespace {
 
-// Large read-backs are looked at on a grid of about this many pixels.
-constexpr int kMostPixels = 1 << 16;
-// Places of the texel's centre in each direction, evenly spread.
-constexpr int kPlaces = 3;
-// A pixel belongs to the surface of another if its depth is off that one's plane by less than this
-// share of the difference, or of the slope, or of the depth.
-constexpr double kMostBend = 0.3;
-constexpr double kDepthTolerance = 1e-3;
-
-class ShadowOfSurface {
- public:
-  ShadowOfSurface(const Readback& readback, const PixelFootprints& footprints, int bit)
-      : readback_(readback),
-        footprints_(footprints),
-        affine_depth_(footprints.affine_depth()),
-        bit_(bit),
-        facing_(readback.depth.size(), Facing::kUnknown) {}
-
-  double Bit(int x, int y) const { return (readback_.shadow_bits[Index(x, y)] >> bit_) & 1u; }
-
-  // The shadow at a place of the screen, interpolated between the pixels around it that lie on the
-  // surface through (x, y); nothing where none does. Outside the image its edge continues.
-  std::optional<double> At(const Eigen::Vector2d& place,
-                           int x,
-                           int y,
-                           const DepthGradient& gradient) {
-    const double column = std::clamp(place.x() - 0.5, 0.0, readback_.width() - 1.0);
-    const double row = std::clamp(place.y() - 0.5, 0.0, readback_.height() - 1.0);
-    const int left = std::min(static_cast<int>(column), readback_.width() - 2);
-    const int top = std::min(static_cast<int>(row), readback_.height() - 2);
-    double sum_weight = 0.0, sum = 0.0;
-    for (int j = 0; j < 2; ++j) {
-      for (int i = 0; i < 2; ++i) {
-        const double weight = (i == 1 ? column - left : 1.0 - (column - left)) *
-                              (j == 1 ? row - top : 1.0 - (row - top));
-        if (weight <= 0.0 || !IsOnSurface(left + i, top + j, x, y, gradient) ||
-            !FacesLight(left + i, top + j)) {
-          continue;
-        }
-        sum_weight += weight;
-        sum += weight * Bit(left + i, top + j);
-      }
+// The share of the finer cells that the border answers wrongly and that lie outside the map;
+// nothing where none are known.
+std::optional<double> OutsideShareOfFineCover(const Readback& readback,
+                                              const Light& light,
+                                              const Eigen::Matrix4d& map_from_world,
+                                              MapSize map,
+                                              Border border) {
+  if (readback.fine_cover == nullptr) return std::nullopt;
+  const FineCover& fine = *readback.fine_cover;
+  const absl::Span<const uint32_t> words = fine.NeededBits(border, light.shadow_bit);
+  if (words.empty()) return std::nullopt;
+  const uint32_t bit = uint32_t{1} << light.shadow_bit;
+  const Readback layer = FineLayer(readback, 0, words);
+  const AffineDepth affine_depth(layer.camera, layer.depth_kind);
+  const Eigen::Matrix4d map_from_screen = map_from_world * layer.camera.WorldFromScreen();
+  int64_t num_outside = 0;
+  for (int y = 0; y < fine.rows; ++y) {
+    for (int x = 0; x < fine.columns; ++x) {
+      const size_t cell = layer.Index(x, y);
+      if ((words[cell] & bit) == 0 || !affine_depth.IsSurface(layer.depth[cell])) continue;
+      const double d = affine_depth.At(x, y, layer.depth[cell]);
+      const Eigen::Vector4d at = map_from_screen * Eigen::Vector4d(x + 0.5, y + 0.5, d, 1.0);
+      const bool is_inside = at.w() > 0.0 && at.x() >= 0.0 && at.y() >= 0.0 &&
+                             at.x() <= map.width * at.w() && at.y() <= map.height * at.w();
+      num_outside += is_inside ? 0 : 1;
     }
-    constexpr double kLeastWeight = 1e-9;
-    if (sum_weight < kLeastWeight) return std::nullopt;
-    return sum / sum_weight;
   }
-
- private:
-  size_t Index(int x, int y) const { return static_cast<size_t>(y) * readback_.width() + x; }
-
-  bool IsOnSurface(int px, int py, int x, int y, const DepthGradient& gradient) const {
-    const double depth = readback_.depth[Index(px, py)];
-    if (!affine_depth_.IsSurface(depth)) return false;
-    const double rise = affine_depth_.At(px, py, depth) - gradient.d;
-    const double expected = (px - x) * gradient.d_x + (py - y) * gradient.d_y;
-    const double slope = std::abs(gradient.d_x) + std::abs(gradient.d_y);
-    return std::abs(rise - expected) <=
-           kMostBend * std::max(std::abs(rise), slope) + kDepthTolerance * std::abs(gradient.d);
-  }
-
-  // Surfaces that are turned away have no shadow to look up. Looked at once, when first asked for.
-  // At the image's border no plane is known, which says nothing.
-  bool FacesLight(int x, int y) {
-    Facing& facing = facing_[Index(x, y)];
-    if (facing == Facing::kUnknown) {
-      const bool is_inner =
-          x > 0 && y > 0 && x + 1 < readback_.width() && y + 1 < readback_.height();
-      const bool is_away = Bit(x, y) == 0.0 && is_inner && !footprints_.At(x, y).has_value();
-      facing = is_away ? Facing::kAway : Facing::kTowards;
-    }
-    return facing == Facing::kTowards;
-  }
-
-  enum class Facing : uint8_t { kUnknown, kTowards, kAway };
-
-  const Readback& readback_;
-  const PixelFootprints& footprints_;
-  const AffineDepth& affine_depth_;
-  int bit_;
-  ScratchVector<Facing> facing_;
-};
+  return static_cast<double>(num_outside) / static_cast<double>(words.size());
+}
 
 }  // namespace
 
@@ -102,42 +49,44 @@ absl::StatusOr<double> ForetellWrongShare(const Readback& readback,
                                           const Light& light,
                                           const Eigen::Matrix4d& map_from_world,
                                           MapSize map,
-                                          const SampleOptions& options) {
+                                          const SampleOptions& options,
+                                          Border border) {
   const absl::StatusOr<PixelFootprints> footprints =
       PixelFootprints::Create(readback, light, map_from_world, options);
   if (!footprints.ok()) return footprints.status();
-  ShadowOfSurface shadow(readback, *footprints, light.shadow_bit);
-  const double num_pixels = static_cast<double>(readback.width()) * readback.height();
-  const int stride = std::max(1, static_cast<int>(std::ceil(std::sqrt(num_pixels / kMostPixels))));
-  double sum = 0.0;
-  int64_t num_looked_at = 0;
-  for (int y = stride / 2; y < readback.height(); y += stride) {
-    if (absl::Status status = CheckStop(light); !status.ok()) return status;
-    for (int x = stride / 2; x < readback.width(); x += stride) {
-      ++num_looked_at;
-      const std::optional<PixelFootprint> pixel = footprints->At(x, y);
-      if (!pixel.has_value()) continue;
-      const double bit = shadow.Bit(x, y);
-      const Eigen::Vector2d& texel = pixel->texel;
-      if (pixel->is_behind || texel.x() < 0.0 || texel.y() < 0.0 || texel.x() > map.width ||
-          texel.y() > map.height) {
-        sum += bit;
-        continue;
-      }
-      double wrong = 0.0;
-      for (int j = 0; j < kPlaces; ++j) {
-        for (int i = 0; i < kPlaces; ++i) {
-          const Eigen::Vector2d delta((i + 0.5) / kPlaces - 0.5, (j + 0.5) / kPlaces - 0.5);
-          const Eigen::Vector2d place =
-              Eigen::Vector2d(x + 0.5, y + 0.5) + pixel->J_screen_map * delta;
-          const std::optional<double> there = shadow.At(place, x, y, pixel->gradient);
-          if (there.has_value()) wrong += std::abs(*there - bit);
-        }
-      }
-      sum += wrong / (kPlaces * kPlaces);
-    }
+  // What lies outside the finer image tells better.
+  const std::optional<double> outside =
+      OutsideShareOfFineCover(readback, light, map_from_world, map, border);
+  const std::optional<Border> counted = outside.has_value() ? std::nullopt : std::optional(border);
+  const absl::StatusOr<double> share =
+      readback.KnowsFacing(light.shadow_bit)
+          ? ForetellByState(readback, light, *footprints, map, counted)
+          : ForetellByBits(readback, light, *footprints, map, counted);
+  if (!share.ok()) return share;
+  return std::min(*share + outside.value_or(0.0), 1.0);
+}
+
+double ForecastFactor(const Readback& readback, const Light& light) {
+  // Measured at 180x180 and at 360x360 (docs/defaults.md); between them by the logarithm of the
+  // side.
+  constexpr double kFine = 1.0;  // octaves above 180
+  const double side = std::sqrt(static_cast<double>(readback.width()) * readback.height());
+  const double octaves = std::clamp(std::log2(side / 180.0), 0.0, kFine);
+  return readback.KnowsFacing(light.shadow_bit) ? 1.6 - 0.1 * octaves : 2.5 - 0.8 * octaves;
+}
+
+std::optional<double> MeasuredWrongShare(const Readback& readback, const Light& light) {
+  if (!readback.KnowsMapped(light.shadow_bit)) return std::nullopt;
+  const AffineDepth affine_depth(readback.camera, readback.depth_kind);
+  const uint32_t bit = uint32_t{1} << light.shadow_bit;
+  const bool knows_facing = readback.KnowsFacing(light.shadow_bit);
+  int64_t num_wrong = 0;
+  for (size_t i = 0; i < readback.depth.size(); ++i) {
+    if (!affine_depth.IsSurface(readback.depth[i])) continue;
+    if (knows_facing && (readback.facing_bits[i] & bit) == 0) continue;
+    num_wrong += ((readback.shadow_bits[i] ^ readback.mapped_bits[i]) & bit) != 0 ? 1 : 0;
   }
-  return num_looked_at > 0 ? sum / static_cast<double>(num_looked_at) : 0.0;
+  return static_cast<double>(num_wrong) / static_cast<double>(readback.depth.size());
 }
 
 }  // namespace lightfit

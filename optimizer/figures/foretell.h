@@ -1,13 +1,17 @@
 // optimizer/figures/foretell.h
 //
 // How many shadow pixels a matrix will get wrong, foretold from the read-back alone.
-// In:   Readback, Light, a matrix and the size of its map.
-// Out:  the share of the image's pixels that will be wrong, with nearest texels and an ideal bias.
+// In:   Readback, Light, a matrix, the size of its map and its border.
+// Out:  the share of the image's pixels that will be wrong, with nearest texels and an ideal bias;
+//       how far off that may be; what is wrong now, where the read-back says what the drawn map
+//       says.
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "absl/status/statusor.h"
+#include "geometry/border.h"
 #include "geometry/light.h"
 #include "geometry/map_size.h"
 #include "optimizer/readback/readback.h"
@@ -15,21 +19,35 @@
 
 namespace lightfit {
 
-// A pixel is shadowed as the centre of its texel is, which lies up to half a texel away: at
-// J_screen_map delta on the screen, delta anywhere in [-1/2, 1/2]^2. Foretold is the mean over
-// delta and over pixels of the difference between the pixel's shadow bit and the read-back's bits,
-// interpolated on the same surface, at that place; and all dark pixels outside the map. To first
-// order, for edges that are straight and far apart, that is math.md (12); where texels are larger
-// than shadows it stays below twice their area.   math.md (13)
+// A pixel is shadowed as the centre of its texel is, which lies up to half a texel away, at any
+// place of the pixel's own plane. What the read-back shows at that place tells how often the
+// look-up is wrong:   math.md (13)
+//  - with the third state (Readback::KnowsFacing()) by classes: the other side of an edge on the
+//    same surface, a surface turned away, something that stands before or behind the place; with
+//    weights measured by exact ray casting. What the map leaves outside although the border answers
+//    it wrongly counts whole, and is guessed where the cover is as tight as the pixels are apart.
+//  - without it by the difference of the shadow bits, interpolated on the same surface.
 //
-// In 0 ... 1. Compared with what exact ray casting measures the figure is right within a factor of
-// two or so from scene to scene, and ranks matrices on one image better than that
-// (docs/defaults.md). InvalidArgument for a read-back, light or matrix that cannot be used;
-// CancelledError once a StopScope says so.
+// In 0 ... 1. ForecastFactor() says how good it is; docs/defaults.md how that was measured.
+// InvalidArgument for a read-back, light or matrix that cannot be used; CancelledError once a
+// StopScope says so.
 absl::StatusOr<double> ForetellWrongShare(const Readback& readback,
                                           const Light& light,
                                           const Eigen::Matrix4d& map_from_world,
                                           MapSize map,
-                                          const SampleOptions& options = {});
+                                          const SampleOptions& options = {},
+                                          Border border = Border::kLit);
+
+// On two lights of three the measured share is within this factor of the foretold one, either way.
+double ForecastFactor(const Readback& readback, const Light& light);
+
+// Two forecasts on one light and read-back that are within this factor of one another say "about
+// the same": measured, the smaller one may be the larger.
+inline constexpr double kSameForecast = 1.1;
+
+// The share of pixels at which the map that was drawn with says other than the truth
+// (Readback::mapped_bits), of all; nothing where the read-back does not say. Surfaces that are
+// known to be turned away are right.
+std::optional<double> MeasuredWrongShare(const Readback& readback, const Light& light);
 
 }  // namespace lightfit

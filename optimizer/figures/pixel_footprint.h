@@ -37,6 +37,9 @@ class PixelFootprints {
   std::optional<PixelFootprint> At(int x, int y) const;
 
   const AffineDepth& affine_depth() const { return affine_depth_; }
+  const Eigen::Matrix4d& world_from_screen() const { return world_from_screen_; }
+  // (u w, v w, w) of (x, y, d, 1), texels.
+  const Eigen::Matrix<double, 3, 4>& map_from_screen() const { return map_from_screen_; }
 
  private:
   PixelFootprints(const Readback& readback,
@@ -50,7 +53,7 @@ class PixelFootprints {
   Eigen::Vector4d light_position_;
   Eigen::Matrix4d world_from_screen_;
   Eigen::Matrix4d screen_from_world_;
-  Eigen::Matrix<double, 3, 4> map_from_screen_;  // (u w, v w, w) of (x, y, d, 1)
+  Eigen::Matrix<double, 3, 4> map_from_screen_;
 };
 
 }  // namespace lightfit

@@ -14,6 +14,8 @@
 #include "geometry/ray_cone.h"
 #include "optimizer/readback/cover_hull.h"
 #include "optimizer/readback/covered_surfaces.h"
+#include "optimizer/readback/fine_cover.h"
+#include "optimizer/readback/needed_surfaces.h"
 
 namespace lightfit {
 
@@ -26,14 +28,61 @@ absl::Status FlatError(const Light& light) {
       light.name));
 }
 
-// An axis that has all boxes of the grid in front of it.
-std::optional<Eigen::Vector3d> AxisOfBoxes(const TileGrid& grid, const Matrix34d& ray_from_screen) {
+// What is to be covered in one image, with the rays of its screen points.
+struct Layer {
+  const DepthTiles* tiles;
+  Matrix34d ray_from_screen;
+};
+
+// One image of the finer cover and what is to be covered in it.
+struct FineSurfaces {
+  Surfaces surfaces;
+  DepthTiles tiles;
+  Matrix34d ray_from_screen;
+
+  Layer layer() const { return {&tiles, ray_from_screen}; }
+};
+
+// Those that have anything to be covered.
+ScratchVector<FineSurfaces> FindFineSurfaces(const Surfaces& surfaces,
+                                             const Light& light,
+                                             Border border) {
+  const Readback& readback = surfaces.readback;
+  ScratchVector<FineSurfaces> found;
+  if (readback.fine_cover == nullptr) return found;
+  const FineCover& fine = *readback.fine_cover;
+  const absl::Span<const uint32_t> words = fine.NeededBits(border, light.shadow_bit);
+  if (words.empty()) return found;
+  for (int i = 0; i < NumFineLayers(fine); ++i) {
+    FineSurfaces layer = {Surfaces(FineLayer(readback, i, words), surfaces.options), {}, {}};
+    layer.tiles = BuildDepthTiles(layer.surfaces.readback,
+                                  layer.surfaces.affine_depth,
+                                  {words, uint32_t{1} << light.shadow_bit});
+    layer.ray_from_screen = RayFromWorld(light) * layer.surfaces.world_from_screen;
+    if (layer.tiles.num_surfaces > 0) found.push_back(std::move(layer));
+  }
+  return found;
+}
+
+// An axis that has all boxes of the grids in front of it; of coarse ones where `level` is above 0.
+std::optional<Eigen::Vector3d> AxisOfBoxes(absl::Span<const Layer> layers, size_t level) {
   ScratchVector<Eigen::Vector3d> rays;
-  rays.reserve(8 * grid.tiles.size());
-  ForEachTile(grid, [&](const DepthTile& tile) {
-    for (const Eigen::Vector4d& corner : Corners(tile)) rays.push_back(ray_from_screen * corner);
-  });
+  for (const Layer& layer : layers) {
+    const auto& grids = layer.tiles->grids;
+    ForEachTile(grids[std::min(level, grids.size() - 1)], [&](const DepthTile& tile) {
+      for (const Eigen::Vector4d& corner : Corners(tile)) {
+        rays.push_back(layer.ray_from_screen * corner);
+      }
+    });
+  }
   return FeasibleAxis(rays);
+}
+
+// Few, coarse boxes will do unless they reach around the light where finer ones do not.
+std::optional<Eigen::Vector3d> AxisOfBoxes(absl::Span<const Layer> layers) {
+  std::optional<Eigen::Vector3d> axis = AxisOfBoxes(layers, 1);
+  if (!axis.has_value()) axis = AxisOfBoxes(layers, 0);
+  return axis;
 }
 
 Eigen::Vector3d MeanRay(const TileGrid& grid, const Matrix34d& ray_from_screen) {
@@ -69,12 +118,21 @@ TileGrid BoxesAlong(const TileGrid& grid, const Matrix34d& normalized_from_scree
 
 // A linear function of the world point, on the screen.
 struct DepthOnScreen {
+  DepthOnScreen(const Eigen::RowVector4d& depth_from_world,
+                const Eigen::Matrix4d& world_from_screen)
+      : depth_from_screen(depth_from_world * world_from_screen),
+        scale_from_screen(world_from_screen.row(3)) {}
+
   Eigen::RowVector4d depth_from_screen, scale_from_screen;
 
   double At(const Eigen::Vector4d& screen) const {
     return depth_from_screen.dot(screen) / scale_from_screen.dot(screen);
   }
 };
+
+// How much nearer to a point light than all that is lit something dark may be, as a share, and
+// still be told from what hides it: beside the light itself there is no bound.
+constexpr double kLeastNear = 0.01;
 
 constexpr DepthRange kNoDepth = {std::numeric_limits<double>::infinity(),
                                  -std::numeric_limits<double>::infinity()};
@@ -122,29 +180,37 @@ absl::Status SurroundedError(const Light& light) {
       light.position.z()));
 }
 
-absl::StatusOr<RayCover> CoverReceivers(const Surfaces& surfaces, const Light& light, Cover which) {
-  DepthTiles shadowed;
+absl::StatusOr<RayCover> CoverReceivers(
+    const Surfaces& surfaces, const Light& light, Cover which, Border border, bool use_fine_cover) {
+  std::optional<NeededSurfaces> filter;
+  DepthTiles needed;
   if (which == Cover::kShadowed) {
-    shadowed = BuildDepthTiles(
-        surfaces.readback, surfaces.affine_depth, {uint32_t{1} << light.shadow_bit});
+    filter.emplace(surfaces, light, border);
+    needed = BuildDepthTiles(surfaces.readback,
+                             surfaces.affine_depth,
+                             {filter->words(), uint32_t{1} << light.shadow_bit});
   }
+  const bool covers_all = needed.num_surfaces == 0;
+  ScratchVector<FineSurfaces> fine;
+  if (use_fine_cover && !covers_all) fine = FindFineSurfaces(surfaces, light, border);
   if (absl::Status status = CheckStop(light); !status.ok()) return status;
-  const bool covers_all = shadowed.num_surfaces == 0;
-  const CoveredSurfaces covered = {surfaces, covers_all ? surfaces.tiles : shadowed};
+  const CoveredSurfaces covered = {surfaces, covers_all ? surfaces.tiles : needed};
   const DepthTiles& tiles = covered.tiles;
   const Matrix34d ray_from_screen = RayFromWorld(light) * surfaces.world_from_screen;
   RayCover cover;
-  cover.nothing_shadowed = which == Cover::kShadowed && covers_all;
+  cover.border = border;
+  cover.nothing_to_cover = which == Cover::kShadowed && covers_all;
   Eigen::Matrix3d frame_from_ray = Eigen::Matrix3d::Identity();
-  DepthOnScreen depth;
-  depth.scale_from_screen = surfaces.world_from_screen.row(3);
+  Eigen::RowVector4d depth_from_world = Eigen::RowVector4d::Zero();
   bool one_by_one = false;
   if (light.kind == Light::Kind::kPoint) {
-    // Few, coarse boxes will do unless they reach around the light where finer ones do not.
-    std::optional<Eigen::Vector3d> axis;
-    for (size_t level = std::min<size_t>(1, tiles.grids.size() - 1) + 1; level-- > 0;) {
-      axis = AxisOfBoxes(tiles.grids[level], ray_from_screen);
-      if (axis.has_value()) break;
+    ScratchVector<Layer> layers = {{&tiles, ray_from_screen}};
+    for (const FineSurfaces& layer : fine) layers.push_back(layer.layer());
+    std::optional<Eigen::Vector3d> axis = AxisOfBoxes(layers);
+    if (!axis.has_value() && !fine.empty()) {
+      fine.clear();
+      layers.resize(1);
+      axis = AxisOfBoxes(layers);
     }
     if (axis.has_value()) {
       cover.mean_ray = MeanRay(tiles.grids[0], ray_from_screen);
@@ -166,26 +232,46 @@ absl::StatusOr<RayCover> CoverReceivers(const Surfaces& surfaces, const Light& l
     if (absl::Status status = CheckStop(light); !status.ok()) return status;
     if (!axis.has_value()) return SurroundedError(light);
     frame_from_ray = FrameAlong(*axis);
-    depth.depth_from_screen = frame_from_ray.row(2) * ray_from_screen;
+    depth_from_world = frame_from_ray.row(2) * RayFromWorld(light);
   } else {
-    depth.depth_from_screen =
-        light.direction.stableNormalized().transpose() * surfaces.world_from_screen.topRows<3>();
+    depth_from_world.head<3>() = light.direction.stableNormalized().transpose();
   }
+  const DepthOnScreen depth(depth_from_world, surfaces.world_from_screen);
   cover.depth =
       one_by_one ? RangeOverReceivers(covered, depth) : RangeOverBoxes(tiles.grids[0], depth);
 
   cover.hull = ExactHull(covered, frame_from_ray * ray_from_screen);
+  if (!fine.empty()) {
+    ScratchVector<Eigen::Vector2d> points(cover.hull.begin(), cover.hull.end());
+    for (const FineSurfaces& layer : fine) {
+      const Polygon hull =
+          ExactHull({layer.surfaces, layer.tiles}, frame_from_ray * layer.ray_from_screen);
+      points.insert(points.end(), hull.begin(), hull.end());
+      const DepthRange range = RangeOverBoxes(
+          layer.tiles.grids[0], DepthOnScreen(depth_from_world, layer.surfaces.world_from_screen));
+      cover.depth = Extended(Extended(cover.depth, range.near), range.far);
+    }
+    cover.hull = ConvexHull(points);
+  }
   if (absl::Status status = CheckStop(light); !status.ok()) return status;
   const std::optional<Eigen::Matrix3d> normalized = NormalizeRays(frame_from_ray, &cover.hull);
   if (!normalized.has_value()) {
-    // A single shadowed pixel, or a row of them, has no area, which is as good as no shadow.
-    return covers_all ? FlatError(light) : CoverReceivers(surfaces, light, Cover::kReceivers);
+    // A single pixel to cover, or a row of them, has no area, which is as good as none.
+    if (covers_all) return FlatError(light);
+    return CoverReceivers(surfaces, light, Cover::kReceivers, border);
   }
   cover.normalized_from_ray = *normalized;
   if (!covers_all) {
-    // What is lit may land in the map too, behind all that is shadowed.
+    // What need not be covered may land in the map too, behind all that is; or in front of it,
+    // which matters where it is dark.
     const TileGrid close = BoxesAlong(surfaces.tiles.grids[0], *normalized * ray_from_screen);
-    cover.depth.far = std::max(cover.depth.far, RangeOverBoxes(close, depth).far);
+    const DepthRange all = RangeOverBoxes(close, depth);
+    cover.depth.far = std::max(cover.depth.far, all.far);
+    if (border == Border::kDark) {
+      cover.depth.near = light.kind == Light::Kind::kPoint
+                             ? std::clamp(all.near, kLeastNear * cover.depth.near, cover.depth.near)
+                             : std::min(all.near, cover.depth.near);
+    }
     if (absl::Status status = CheckStop(light); !status.ok()) return status;
   }
   return cover;

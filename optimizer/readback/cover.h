@@ -1,7 +1,8 @@
 // optimizer/readback/cover.h
 //
-// What one light's map must cover: the cone of rays to all receivers, or to the shadowed ones.
-// In:   Surfaces, Light, Cover.
+// What one light's map must cover: the cone of rays to all receivers, or to those that the border
+// would answer wrongly.
+// In:   Surfaces, Light, Cover, Border.
 // Out:  coordinates that fit the rays, their convex hull, their mean, and the range of depth.
 #pragma once
 
@@ -9,6 +10,7 @@
 
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
+#include "geometry/border.h"
 #include "geometry/homography.h"
 #include "geometry/light.h"
 #include "geometry/polygon.h"
@@ -19,8 +21,9 @@ namespace lightfit {
 // What the map must have room for.
 enum class Cover {
   kReceivers,  // every surface in view: nothing that comes to be shadowed is outside
-  kShadowed  // every shadowed surface in view: what is lit may lie outside the map, where a look-up
-             // finds light. Every surface where the shadow has no area
+  kShadowed    // every surface in view that the border would answer wrongly: with a lit border the
+             // shadowed ones, as what is lit may lie outside the map, where a look-up finds light;
+             // with a dark border the lit ones. Every surface where those have no area
 };
 
 struct RayCover {
@@ -35,27 +38,38 @@ struct RayCover {
   // a focused shadow map. For a directional light always (0, 0, 1).
   Eigen::Vector3d mean_ray = Eigen::Vector3d::UnitZ();
 
-  // Bounds, world units: near over the covered receivers, far over all whose rays run close to
-  // theirs. Point light: of X'_3, the depth along the third row of N, which is a unit vector.
-  // Directional light: of the depth along the direction of travel.
+  // Bounds, world units. Far is over all receivers whose rays run close to the covered ones: what
+  // lies behind would be cut. Near is over the covered ones, as what is nearer to the light is lit;
+  // with a dark border over all, as what is nearer may be dark. Point light: of X'_3, the depth
+  // along the third row of N, which is a unit vector. Directional light: of the depth along the
+  // direction of travel.
   DepthRange depth;
 
-  // Cover::kShadowed where nothing is shadowed: all receivers are covered for want of any.
-  bool nothing_shadowed = false;
+  Border border = Border::kLit;
+
+  // Cover::kShadowed where the border is right about everything: all receivers are covered for want
+  // of any.
+  bool nothing_to_cover = false;
 };
 
 // The hull is that of the rays through the centres of all pixels to cover, exactly: tiles are
 // bounded by the corners of their depth boxes, and only those that reach out of the hull found so
 // far are looked into, coarse tiles before fine ones before pixels.
 //
-// Without any shadowed surface, or with all of them in one plane with the light (one pixel, a row
-// of them), kShadowed covers every receiver.
+// `use_fine_cover`: and through the centres of the cells of Readback::fine_cover, if there is one,
+// that have any such surface, at its nearest and furthest depth; left out where a point light has
+// them all around.
+//
+// Without any such surface, or with all of them in one plane with the light (one pixel, a row of
+// them), kShadowed covers every receiver.
 //
 // FailedPrecondition when the receivers to cover surround a point light, or all lie in one plane
 // with the light; CancelledError once a StopScope says so.
 absl::StatusOr<RayCover> CoverReceivers(const Surfaces& surfaces,
                                         const Light& light,
-                                        Cover cover = Cover::kReceivers);
+                                        Cover cover = Cover::kReceivers,
+                                        Border border = Border::kLit,
+                                        bool use_fine_cover = false);
 
 // The cover of rays that are known by their hull alone: `rays` in light space, `depth` as in
 // RayCover for a directional light, distances from a point light. `mean_ray` is not used where it

@@ -36,12 +36,11 @@ std::array<Eigen::Vector4d, 8> Corners(const DepthTile& tile) {
 
 ScratchVector<Eigen::Vector4d> OneReceiverPerTile(const CoveredSurfaces& covered, size_t grid) {
   const Readback& readback = covered.surfaces.readback;
-  const uint32_t mask = covered.tiles.filter.shadow_mask;
   const auto first_receiver = [&](const DepthTile& tile) -> Eigen::Vector4d {
     for (int y = tile.y_begin; y < tile.y_end; ++y) {
       for (int x = tile.x_begin; x < tile.x_end; ++x) {
         const size_t pixel = readback.Index(x, y);
-        if (mask != 0 && (readback.shadow_bits[pixel] & mask) == 0) continue;
+        if (!covered.tiles.filter.Has(pixel)) continue;
         const double depth = readback.depth[pixel];
         if (!covered.surfaces.affine_depth.IsSurface(depth)) continue;
         return {x + 0.5, y + 0.5, covered.surfaces.affine_depth.At(x, y, depth), 1.0};

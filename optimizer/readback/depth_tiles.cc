@@ -100,14 +100,14 @@ DepthTiles BuildDepthTiles(const Readback& readback,
       DepthTile tile = {
           x, y, std::min(x + tile_size, width), std::min(y + tile_size, height), 0.0, 0.0, 0};
       const size_t first = static_cast<size_t>(y) * width + x;
-      const internal::DepthStatistics statistics = internal::ScanDepth(
-          readback.depth.data() + first,
-          filter.shadow_mask == 0 ? nullptr : readback.shadow_bits.data() + first,
-          filter.shadow_mask,
-          width,
-          tile.x_end - x,
-          tile.y_end - y,
-          intervals);
+      const internal::DepthStatistics statistics =
+          internal::ScanDepth(readback.depth.data() + first,
+                              filter.mask == 0 ? nullptr : filter.words.data() + first,
+                              filter.mask,
+                              width,
+                              tile.x_end - x,
+                              tile.y_end - y,
+                              intervals);
       result.num_background += statistics.num_background;
       result.num_surfaces += statistics.num_surface;
       tile.num_surfaces = statistics.num_surface;

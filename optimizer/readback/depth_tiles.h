@@ -10,6 +10,7 @@
 
 #include <cstdint>
 
+#include "absl/types/span.h"
 #include "base/scratch.h"
 #include "geometry/affine_depth.h"
 #include "optimizer/readback/readback.h"
@@ -31,9 +32,12 @@ struct TileGrid {
   ScratchVector<DepthTile> tiles;
 };
 
-// Which surfaces of a read-back are meant.
+// Which surfaces of a read-back are meant: those whose word has one of the bits.
 struct SurfaceFilter {
-  uint32_t shadow_mask = 0;  // those with one of these shadow bits; 0: all
+  absl::Span<const uint32_t> words;  // row-major, one for each pixel; must outlive its tiles
+  uint32_t mask = 0;                 // 0: all surfaces, and no words
+
+  bool Has(size_t pixel) const { return mask == 0 || (words[pixel] & mask) != 0; }
 };
 
 struct DepthTiles {
@@ -61,9 +65,7 @@ void ForEachSurface(const Readback& readback,
   for (int y = tile.y_begin; y < tile.y_end; ++y) {
     for (int x = tile.x_begin; x < tile.x_end; ++x) {
       const size_t pixel = readback.Index(x, y);
-      if (filter.shadow_mask != 0 && (readback.shadow_bits[pixel] & filter.shadow_mask) == 0) {
-        continue;
-      }
+      if (!filter.Has(pixel)) continue;
       const double depth = readback.depth[pixel];
       if (affine_depth.IsSurface(depth)) visit(x, y, affine_depth.At(x, y, depth));
     }

@@ -1,6 +1,7 @@
 #include "optimizer/readback/readback.h"
 
 #include "absl/strings/str_format.h"
+#include "optimizer/readback/fine_cover.h"
 
 namespace lightfit {
 
@@ -17,15 +18,28 @@ absl::Status ValidateReadback(const Readback& readback) {
                         readback.height(),
                         want));
   }
-  if (readback.shadow_bits.size() != want) {
+  const auto check_bits = [&](const char* field, size_t size) {
+    if (size == want) return absl::OkStatus();
     return absl::InvalidArgumentError(
-        absl::StrFormat("readback.shadow_bits: %d words, want %d x %d = %d as in readback.camera",
-                        readback.shadow_bits.size(),
+        absl::StrFormat("readback.%s: %d words, want %d x %d = %d as in readback.camera",
+                        field,
+                        size,
                         readback.width(),
                         readback.height(),
                         want));
+  };
+  if (absl::Status status = check_bits("shadow_bits", readback.shadow_bits.size()); !status.ok()) {
+    return status;
   }
-  return absl::OkStatus();
+  if (!readback.facing_bits.empty()) {
+    absl::Status status = check_bits("facing_bits", readback.facing_bits.size());
+    if (!status.ok()) return status;
+  }
+  if (!readback.mapped_bits.empty()) {
+    absl::Status status = check_bits("mapped_bits", readback.mapped_bits.size());
+    if (!status.ok()) return status;
+  }
+  return readback.fine_cover != nullptr ? ValidateFineCover(readback) : absl::OkStatus();
 }
 
 }  // namespace lightfit

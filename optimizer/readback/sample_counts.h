@@ -16,7 +16,8 @@ struct SampleCounts {
   int64_t discontinuity = 0;  // candidates at a depth discontinuity
   int64_t facing_away = 0;    // candidates whose surface, or whose lit side, faces away
   int64_t edge_on = 0;        // candidates edge-on to the light or the eye
-  int64_t used = 0;           // candidates - all of the above but receivers, invalid_depth
+  int64_t used = 0;           // candidates - all of these but receivers, invalid_depth
+  int64_t beyond_map = 0;     // candidates far outside what a map with a dark border must cover
 };
 
 }  // namespace lightfit

@@ -31,8 +31,8 @@ struct SampleOptions {
   double min_cos_light = 0.002;
   double min_cos_eye = 0.01;
 
-  // Fewer boundary samples than this are not fitted: the optimum would serve one corner of one
-  // shadow. >= 1.
+  // Fewer boundary samples than this are not searched for: the optimum would serve one corner of
+  // one shadow. They get the focused map, StopReason::kTooFewSamples. >= 1.
   int min_samples = 8;
 
   // Half width of the window, in pixels, over which the direction of a shadow edge is estimated

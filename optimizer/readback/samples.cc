@@ -47,7 +47,10 @@ bool IsWanted(const BoundaryPixel& pixel, const SampleOptions& options) {
 
 enum class Facing : uint8_t { kAway, kEdgeOn, kTowards };
 
-Facing FacingOf(const BoundaryPixel& pixel, const Light& light, const SampleOptions& options) {
+// By the plane that the depth tells.
+Facing FacingByNormal(const BoundaryPixel& pixel,
+                      const Light& light,
+                      const SampleOptions& options) {
   const Eigen::Vector3d to_light = light.kind == Light::Kind::kPoint
                                        ? Eigen::Vector3d(light.position - pixel.position)
                                        : Eigen::Vector3d(-light.direction.stableNormalized());
@@ -59,12 +62,28 @@ Facing FacingOf(const BoundaryPixel& pixel, const Light& light, const SampleOpti
   return is_seen ? Facing::kTowards : Facing::kEdgeOn;
 }
 
+// As the read-back says, which must know; planes that contradict it are no good.
+Facing FacingAsGiven(const BoundaryPixel& pixel,
+                     const Readback& readback,
+                     const Light& light,
+                     const SampleOptions& options) {
+  const Facing facing = FacingByNormal(pixel, light, options);
+  const bool faces =
+      (readback.facing_bits[readback.Index(pixel.x, pixel.y)] >> light.shadow_bit) & 1u;
+  if (!faces) return Facing::kAway;
+  return facing == Facing::kAway ? Facing::kEdgeOn : facing;
+}
+
 // Tells shadow edges from terminators: the borders between shadow and surfaces that are turned away
 // from the light, whose bit is 0 because no shadow is looked up there.
 class Terminators {
  public:
-  Terminators(const Surfaces& surfaces, uint32_t bit, const ScratchVector<Facing>& facing)
-      : surfaces_(surfaces), bit_(bit), facing_(facing) {
+  Terminators(const Surfaces& surfaces,
+              uint32_t bit,
+              bool knows_facing,
+              const ScratchVector<Facing>& facing)
+      : surfaces_(surfaces), knows_facing_(knows_facing), bit_(bit), facing_(facing) {
+    if (knows_facing_) return;
     row_begin_.reserve(surfaces.readback.height() + 1);
     for (size_t i = 0; i < surfaces.boundary.size(); ++i) {
       while (static_cast<int>(row_begin_.size()) <= surfaces.boundary[i].y) {
@@ -74,8 +93,14 @@ class Terminators {
     row_begin_.resize(surfaces.readback.height() + 1, surfaces.boundary.size());
   }
 
-  // Whether every neighbour without shadow of a shadowed pixel is turned away from the light.
+  // Whether every neighbour without shadow of a shadowed pixel is turned away from the light. With
+  // the third state: whether no neighbour is in the other state, lit or in shadow.
   bool Has(const BoundaryPixel& pixel) const {
+    if (knows_facing_) {
+      const uint32_t other = ~Word(pixel.x, pixel.y) & bit_;
+      return !Is(other, pixel.x - 1, pixel.y) && !Is(other, pixel.x + 1, pixel.y) &&
+             !Is(other, pixel.x, pixel.y - 1) && !Is(other, pixel.x, pixel.y + 1);
+    }
     if ((Word(pixel.x, pixel.y) & bit_) == 0) return false;
     return IsShadowedOrAway(pixel.x - 1, pixel.y) && IsShadowedOrAway(pixel.x + 1, pixel.y) &&
            IsShadowedOrAway(pixel.x, pixel.y - 1) && IsShadowedOrAway(pixel.x, pixel.y + 1);
@@ -84,6 +109,14 @@ class Terminators {
  private:
   uint32_t Word(int x, int y) const {
     return surfaces_.readback.shadow_bits[static_cast<size_t>(y) * surfaces_.readback.width() + x];
+  }
+
+  // Whether a surface faces the light and has this shadow bit.
+  bool Is(uint32_t shadow, int x, int y) const {
+    const size_t pixel = surfaces_.readback.Index(x, y);
+    return (surfaces_.readback.facing_bits[pixel] & bit_) != 0 &&
+           (surfaces_.readback.shadow_bits[pixel] & bit_) == shadow &&
+           surfaces_.affine_depth.IsSurface(surfaces_.readback.depth[pixel]);
   }
 
   // A neighbour without shadow is a boundary pixel itself, unless no plane is known there.
@@ -100,6 +133,7 @@ class Terminators {
   }
 
   const Surfaces& surfaces_;
+  bool knows_facing_;
   uint32_t bit_;
   const ScratchVector<Facing>& facing_;  // by boundary pixel
   ScratchVector<size_t> row_begin_;      // in Surfaces::boundary
@@ -111,7 +145,10 @@ Samples SelectSamples(const Surfaces& surfaces,
                       const Light& light,
                       const SampleOptions& options,
                       const Eigen::Matrix3d& normalized_from_ray,
-                      bool with_edge_normals) {
+                      bool with_edge_normals,
+                      FacingSource source) {
+  const bool is_given =
+      source == FacingSource::kGiven && surfaces.readback.KnowsFacing(light.shadow_bit);
   const uint32_t bit = uint32_t{1} << light.shadow_bit;
   Samples samples;
   samples.ray_from_screen = normalized_from_ray * RayFromWorld(light) * surfaces.world_from_screen;
@@ -126,9 +163,15 @@ Samples SelectSamples(const Surfaces& surfaces,
   for (const BoundaryPixel& pixel : surfaces.boundary) {
     if (IsStopped(facing.size())) return samples;
     const bool is_candidate = (pixel.lights & bit) != 0 && IsWanted(pixel, options);
-    facing.push_back(is_candidate ? FacingOf(pixel, light, options) : Facing::kTowards);
+    if (!is_candidate) {
+      facing.push_back(Facing::kTowards);
+    } else if (is_given) {
+      facing.push_back(FacingAsGiven(pixel, surfaces.readback, light, options));
+    } else {
+      facing.push_back(FacingByNormal(pixel, light, options));
+    }
   }
-  const Terminators terminators(surfaces, bit, facing);
+  const Terminators terminators(surfaces, bit, is_given, facing);
   for (size_t i = 0; i < surfaces.boundary.size() && !IsStopped(i); ++i) {
     const BoundaryPixel& pixel = surfaces.boundary[i];
     if ((pixel.lights & bit) == 0) continue;
@@ -158,6 +201,24 @@ Samples SelectSamples(const Surfaces& surfaces,
   samples.weight.assign(samples.size(), 1.0);
   samples.counts.used = static_cast<int64_t>(samples.size());
   return samples;
+}
+
+Samples SamplesServed(const Samples& samples) {
+  Samples served;
+  served.ray_from_screen = samples.ray_from_screen;
+  served.counts = samples.counts;
+  for (size_t i = 0; i < samples.size() && !IsStopped(i); ++i) {
+    const Eigen::Vector3d X =
+        samples.ray_from_screen * Eigen::Vector4d(samples.x[i], samples.y[i], samples.d[i], 1.0);
+    const double limit = kSquaresServed * X.z();
+    if (std::abs(X.x()) <= limit && std::abs(X.y()) <= limit) {
+      served.AppendFrom(samples, i);
+    } else {
+      ++served.counts.beyond_map;
+    }
+  }
+  served.counts.used = static_cast<int64_t>(served.size());
+  return served;
 }
 
 Samples SamplesInFront(const Samples& samples, const Eigen::RowVector3d& axis) {

@@ -42,13 +42,21 @@ struct Samples {
 };
 
 // The light's share of the boundary, as `options` want it: those that face the light, are not
-// edge-on to it or to the eye. `normalized_from_ray` acts on RayFromWorld(light); the identity
-// keeps light space. Here and below: of no use once a StopScope says so.
+// edge-on to it or to the eye. Which face it the depth's normals say; with kGiven the read-back
+// does where it knows (facing_bits). `normalized_from_ray` acts on RayFromWorld(light); the
+// identity keeps light space. Here and below: of no use once a StopScope says so.
 Samples SelectSamples(const Surfaces& surfaces,
                       const Light& light,
                       const SampleOptions& options,
                       const Eigen::Matrix3d& normalized_from_ray,
-                      bool with_edge_normals);
+                      bool with_edge_normals,
+                      FacingSource facing = FacingSource::kGuessed);
+
+// Those that a map with a dark border serves, in the order they had: within kSquaresServed times
+// the square that its cover fills in normalised rays. Beyond, everything is dark to the map, and
+// edges there must not draw it away from those that it can show. The others are counted.
+inline constexpr double kSquaresServed = 1.15;
+Samples SamplesServed(const Samples& samples);
 
 // Those with w = p.X > 0, in the order they had. `counts` are as they were.
 Samples SamplesInFront(const Samples& samples, const Eigen::RowVector3d& axis);

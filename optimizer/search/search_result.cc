@@ -12,6 +12,8 @@ const char* StopReasonName(StopReason reason) {
       return "round_limit";
     case StopReason::kAxisAtLimit:
       return "axis_at_limit";
+    case StopReason::kTooFewSamples:
+      return "too_few_samples";
   }
   return "unknown";
 }

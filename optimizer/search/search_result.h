@@ -12,10 +12,11 @@
 namespace lightfit {
 
 enum class StopReason {
-  kNoSearch,     // kFocused: there was nothing to search
-  kConverged,    // no neighbour of the axis is better
-  kRoundLimit,   // the rounds asked for are done
-  kAxisAtLimit,  // the best axis lies on the limit of the warp (SearchOptions::min_w)
+  kNoSearch,      // kFocused: there was nothing to search
+  kConverged,     // no neighbour of the axis is better
+  kRoundLimit,    // the rounds asked for are done
+  kAxisAtLimit,   // the best axis lies on the limit of the warp (SearchOptions::min_w)
+  kTooFewSamples  // fewer than SampleOptions::min_samples: the focused map instead
 };
 
 const char* StopReasonName(StopReason reason);

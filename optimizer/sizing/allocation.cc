@@ -60,6 +60,7 @@ std::vector<double> SplitTexels(absl::Span<const double> factors,
   const double smallest = shares.empty() ? 1.0 : *std::min_element(shares.begin(), shares.end());
   const auto split = [&](double scale) {
     std::vector<double> texels;
+    texels.reserve(shares.size());
     for (const double share : shares) {
       texels.push_back(std::clamp(scale * share, limits.least, limits.most));
     }

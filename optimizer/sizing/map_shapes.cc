@@ -12,6 +12,7 @@
 #include "optimizer/fit.h"
 #include "optimizer/fit_matrix.h"
 #include "optimizer/search/axis_search.h"
+#include "optimizer/sizing/enough_samples.h"
 
 namespace lightfit {
 
@@ -87,6 +88,9 @@ absl::StatusOr<MapShapes> FindMapShapes(const Summary& summary,
   // Checks all that a fit checks, once.
   const absl::StatusOr<LightMatrix> square = Fit(summary, light, MapOfAspect(1.0), options);
   if (!square.ok()) return square.status();
+  if (absl::Status status = CheckEnoughSamples(light, summary.counts, options); !status.ok()) {
+    return status;
+  }
   MapShapes result;
   result.margin_texels = options.margin_texels;
   result.footprint_sum = summary.footprint_sum;

@@ -18,6 +18,7 @@
 #include "optimizer/fit.h"
 #include "optimizer/fit_matrix.h"
 #include "optimizer/sizing/allocation.h"
+#include "optimizer/sizing/enough_samples.h"
 #include "optimizer/sizing/map_shapes.h"
 
 namespace lightfit {
@@ -225,6 +226,9 @@ absl::StatusOr<ToleranceMap> MeetTolerance(const LightView& view,
   if (absl::Status status = CheckServes(view, squares); !status.ok()) return status;
   if (!view.cover.ok()) return view.cover.status();
   const Light& light = *view.light;
+  if (absl::Status status = CheckEnoughSamples(light, view.samples.counts, squares); !status.ok()) {
+    return status;
+  }
   const absl::StatusOr<std::vector<Summary>> summaries =
       SummariesFor(tolerance.kind, view, squares);
   if (!summaries.ok()) return summaries.status();
@@ -272,6 +276,9 @@ absl::StatusOr<ToleranceMap> MeetTolerance(const Summary& summary,
     return absl::InvalidArgumentError(
         "tolerance: a summary can serve the root mean square only, and only when it was summed in "
         "squared footprints (options.metric = kL2); for other tolerances give the read-back");
+  }
+  if (absl::Status status = CheckEnoughSamples(light, summary.counts, options); !status.ok()) {
+    return status;
   }
   const auto try_size = [&](MapSize map) -> absl::StatusOr<ToleranceMap> {
     absl::StatusOr<LightMatrix> matrix = FitMatrix({light, summary}, map, options);

@@ -35,6 +35,7 @@ void Publish(const absl::StatusOr<TrackedMatrix>& result, FrameLight* light) {
   const bool ok = result.ok();
   light->map_from_world = ok ? result->matrix.map_from_world : Eigen::Matrix4d::Identity();
   light->map = ok ? result->matrix.map : MapSize();
+  light->border = ok ? result->matrix.border : Border::kLit;
   light->energy = ok ? result->matrix.figures.energy : 0.0;
   light->action = ok ? result->action : TrackerAction::kFirst;
 }
@@ -60,6 +61,16 @@ void Update(const Submission& submission, Tracker* tracker, FrameMatrices* matri
 }
 
 }  // namespace
+
+Readback FrameReadback::View() const {
+  Readback view;
+  view.camera = camera;
+  view.depth = depth;
+  view.depth_kind = depth_kind;
+  view.shadow_bits = shadow_bits;
+  view.facing_bits = facing_bits;
+  return view;
+}
 
 const FrameLight* FrameMatrices::Find(absl::string_view name) const {
   for (int i = 0; i < num_lights; ++i) {
@@ -131,7 +142,7 @@ absl::StatusOr<AsyncOptimizer> AsyncOptimizer::Start(const TrackerOptions& optio
   shared->options = options;
   try {
     shared->thread =
-        std::jthread([shared = shared.get()](std::stop_token stop) { shared->Run(stop); });
+        std::jthread([shared = shared.get()](const std::stop_token& stop) { shared->Run(stop); });
   } catch (const std::system_error& error) {
     return absl::ResourceExhaustedError(
         absl::StrFormat("cannot start the optimizer's thread: %s; raise the limit of threads, or "

@@ -40,12 +40,13 @@ struct FrameReadback {
   DepthKind depth_kind = DepthKind::kCameraZ;
   std::vector<float> depth;           // as Readback::depth
   std::vector<uint32_t> shadow_bits;  // as Readback::shadow_bits
+  std::vector<uint32_t> facing_bits;  // as Readback::facing_bits; empty: not known
   // At most kMaxLights, known by their names, which must differ. One that is left out is forgotten.
   std::vector<Light> lights;
   MapSize map = {1024, 1024};  // texels, of every light's map
 
   // Refers to this object's buffers.
-  Readback View() const { return {camera, depth, depth_kind, shadow_bits}; }
+  Readback View() const;
 };
 
 struct FrameLight {
@@ -54,7 +55,8 @@ struct FrameLight {
 
   Eigen::Matrix4d map_from_world = Eigen::Matrix4d::Identity();  // as LightMatrix::map_from_world
   MapSize map;                                                   // texels
-  double energy = 0.0;                                           // as LightMatrix::energy
+  Border border = Border::kLit;  // of the map's sampler; it may change with the matrix
+  double energy = 0.0;           // as LightMatrix::energy
 
   // What this frame did to the matrix. Frames that were never polled may have done more: to know
   // whether a map drawn earlier can stay, compare the matrix with the one that it was drawn with.

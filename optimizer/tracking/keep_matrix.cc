@@ -58,7 +58,7 @@ ScratchVector<Eigen::Vector4d> CornersOfCover(const RayCover& cover, const Light
   const Eigen::Matrix3d axes_from_world =
       is_point ? Eigen::Matrix3d(RayFromWorld(light).leftCols<3>()) : FrameAlong(light.direction);
   ScratchVector<Eigen::Vector4d> corners;
-  if (cover.nothing_shadowed) return corners;
+  if (cover.nothing_to_cover) return corners;
   for (const Eigen::Vector2d& vertex : cover.hull) {
     const Eigen::Vector3d ray = ray_from_normalized * vertex.homogeneous();
     for (const double depth : {cover.depth.near, cover.depth.far}) {
@@ -119,7 +119,7 @@ absl::StatusOr<LightMatrix> FiguresOfKept(const Kept& kept,
                                           const ScratchVector<Eigen::Vector4d>& corners,
                                           MapSize map,
                                           const FitOptions& options) {
-  if (inputs.summary.cover.nothing_shadowed) {
+  if (inputs.summary.cover.nothing_to_cover) {
     LightMatrix unused;
     unused.light_name = inputs.light.name;
     unused.map = map;

@@ -24,7 +24,7 @@ enum class TrackerAction {
   kKept,      // the matrix of the frame before, but perhaps for its depth range
   kShifted,   // ... by whole texels
   kRelaid,    // the axis of the frame before, the affine part anew (Keeps::kAxis)
-  kReplaced,  // the fresh fit is better by enough
+  kReplaced,  // the fresh fit is better by enough, maybe with the other border
   kInvalid    // replaced because what must be covered was not
 };
 
@@ -34,6 +34,7 @@ const char* TrackerActionName(TrackerAction action);
 struct TrackedState {
   Light light;
   MapSize map;
+  Border border = Border::kLit;
   Eigen::Matrix4d map_from_world = Eigen::Matrix4d::Identity();
   int64_t frames_kept = 0;
   int64_t frames_since_update = 0;

@@ -12,6 +12,7 @@
 #include "base/stop.h"
 #include "geometry/homography.h"
 #include "geometry/map_size.h"
+#include "optimizer/choose_fit.h"
 #include "optimizer/fit.h"
 #include "optimizer/fit_matrix.h"
 #include "optimizer/light_view.h"
@@ -67,6 +68,24 @@ absl::Status ValidateTrackerOptions(const TrackerOptions& options) {
   return absl::OkStatus();
 }
 
+bool Tracker::IsUpdate(const TrackedState& state) const {
+  return state.frames_since_update + 1 >= options_.update_every_frames;
+}
+
+Border Tracker::BorderOf(const Surfaces& surfaces,
+                         const Light& light,
+                         MapSize map,
+                         const TrackedState& state) const {
+  if (options_.fit.border != BorderChoice::kAutomatic) {
+    return options_.fit.border == BorderChoice::kDark ? Border::kDark : Border::kLit;
+  }
+  const bool is_first = state.map.width == 0;
+  if (!is_first && !IsUpdate(state)) return state.border;
+  FitOptions roomy = options_.fit;
+  roomy.margin_percent += options_.cover_margin_percent;
+  return BorderByForecast(surfaces, light, map, roomy, state.border);
+}
+
 absl::StatusOr<TrackedMatrix> Tracker::UpdateLight(const Surfaces& surfaces,
                                                    const Light& light,
                                                    MapSize map,
@@ -74,7 +93,8 @@ absl::StatusOr<TrackedMatrix> Tracker::UpdateLight(const Surfaces& surfaces,
   // The median decides, so it is always computed.
   FitOptions options = options_.fit;
   options.compute_statistics = true;
-  const absl::StatusOr<LightView> view = ViewLight(surfaces, light, options);
+  const Border border = BorderOf(surfaces, light, map, *state);
+  const absl::StatusOr<LightView> view = ViewLight(surfaces, light, border, options);
   if (!view.ok()) return view.status();
   if (!view->cover.ok()) return view->cover.status();
   const Summary summary = SummaryOfView(*view, options);
@@ -85,6 +105,7 @@ absl::StatusOr<TrackedMatrix> Tracker::UpdateLight(const Surfaces& surfaces,
   const auto replace = [&](LightMatrix fresh, TrackerAction action) {
     state->light = light;
     state->map = map;
+    state->border = border;
     state->map_from_world = fresh.map_from_world;
     state->frames_kept = state->frames_since_update = 0;
     return TrackedMatrix{std::move(fresh), action, 0};
@@ -92,7 +113,8 @@ absl::StatusOr<TrackedMatrix> Tracker::UpdateLight(const Surfaces& surfaces,
 
   // A status with a message would allocate, and having nothing to keep is no error.
   std::optional<Eigen::Matrix3d> kept_map_from_ray;
-  if (state->map.width == map.width && state->map.height == map.height &&
+  const bool is_flip = state->map.width > 0 && state->border != border;
+  if (!is_flip && state->map.width == map.width && state->map.height == map.height &&
       IsSameLight(state->light, light)) {
     const absl::StatusOr<Eigen::Matrix3d> map_from_ray = MapFromRay(state->map_from_world, light);
     if (map_from_ray.ok()) kept_map_from_ray = *map_from_ray;
@@ -100,11 +122,11 @@ absl::StatusOr<TrackedMatrix> Tracker::UpdateLight(const Surfaces& surfaces,
   if (!kept_map_from_ray.has_value()) {
     absl::StatusOr<LightMatrix> first = FitMatrix(inputs, map, roomy);
     if (!first.ok()) return first.status();
-    return replace(*std::move(first), TrackerAction::kFirst);
+    return replace(*std::move(first), is_flip ? TrackerAction::kReplaced : TrackerAction::kFirst);
   }
 
   const ScratchVector<Eigen::Vector4d> corners = CornersOfCover(*view->cover, light);
-  const bool is_update = state->frames_since_update + 1 >= options_.update_every_frames;
+  const bool is_update = IsUpdate(*state);
   Kept kept = KeepMatrix(*state, corners);
   if (options_.keeps == TrackerOptions::Keeps::kAxis) {
     const bool stays = kept.is_valid && kept.action == TrackerAction::kKept && !is_update;

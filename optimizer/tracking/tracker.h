@@ -103,6 +103,15 @@ class Tracker {
                          const absl::Status& status,
                          absl::Span<const Light> lights,
                          MapSize map);
+  // Whether the matrix is to be looked at in this frame, beyond its validity.
+  bool IsUpdate(const TrackedState& state) const;
+
+  // Of the map in this frame, as the options ask; kAutomatic: that of the frame before, and in
+  // every updated frame the better one.
+  Border BorderOf(const Surfaces& surfaces,
+                  const Light& light,
+                  MapSize map,
+                  const TrackedState& state) const;
   absl::StatusOr<TrackedMatrix> UpdateLight(const Surfaces& surfaces,
                                             const Light& light,
                                             MapSize map,

@@ -47,9 +47,11 @@ struct SyntheticReadback {
   Camera camera;
   std::vector<float> depth;           // camera z, kSyntheticBackground where nothing is hit
   std::vector<uint32_t> shadow_bits;  // bit Light::shadow_bit: blocked, or facing away
+  std::vector<uint32_t> facing_bits;  // likewise: facing the light
 
   // Refers to this object's buffers.
   Readback View() const;
+  Readback ViewWithFacing() const;  // and with the third state
 };
 
 inline constexpr float kSyntheticBackground = 1e10f;

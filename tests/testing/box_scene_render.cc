@@ -157,12 +157,13 @@ Ray RayToLight(const Eigen::Vector3d& origin, const Light& light, double* length
   return {origin, offset / *length};
 }
 
-// Sets the light's bit at those of the surfaces, all of one tile, that it does not reach.
+// Sets the light's bits at the surfaces, all of one tile: where it does not reach them, and where
+// they face it.
 void CastShadows(const Light& light,
                  const std::vector<CastBox>& boxes,
                  double floor_half_size,
                  const std::vector<SurfacePoint>& surfaces,
-                 std::vector<uint32_t>& shadow_bits) {
+                 SyntheticReadback& readback) {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (const SurfacePoint& surface : surfaces) middle += surface.position;
   middle /= static_cast<double>(surfaces.size());
@@ -177,7 +178,8 @@ void CastShadows(const Light& light,
   for (const SurfacePoint& surface : surfaces) {
     const Ray ray =
         RayToLight(surface.position + kOcclusionOffset * surface.normal, light, &length);
-    bool blocked = surface.normal.dot(ray.direction) <= 0.0;
+    const bool is_away = surface.normal.dot(ray.direction) <= 0.0;
+    bool blocked = is_away;
     if (ray.direction.z() < 0.0) {
       const double t = -ray.origin.z() / ray.direction.z();
       const Eigen::Vector3d hit = ray.origin + t * ray.direction;
@@ -185,7 +187,9 @@ void CastShadows(const Light& light,
           t > 0.0 && t < length && hit.head<2>().lpNorm<Eigen::Infinity>() <= floor_half_size;
     }
     for (size_t i = 0; i < near.size() && !blocked; ++i) blocked = IsOccluded(ray, length, near[i]);
-    if (blocked) shadow_bits[surface.pixel] |= uint32_t{1} << light.shadow_bit;
+    const uint32_t bit = uint32_t{1} << light.shadow_bit;
+    if (blocked) readback.shadow_bits[surface.pixel] |= bit;
+    if (!is_away) readback.facing_bits[surface.pixel] |= bit;
   }
 }
 
@@ -193,6 +197,12 @@ void CastShadows(const Light& light,
 
 Readback SyntheticReadback::View() const {
   return {camera, depth, DepthKind::kCameraZ, shadow_bits};
+}
+
+Readback SyntheticReadback::ViewWithFacing() const {
+  Readback view = View();
+  view.facing_bits = facing_bits;
+  return view;
 }
 
 SyntheticReadback Render(const BoxScene& scene,
@@ -203,6 +213,7 @@ SyntheticReadback Render(const BoxScene& scene,
   readback.camera = camera;
   readback.depth.assign(num_pixels, kSyntheticBackground);
   readback.shadow_bits.assign(num_pixels, 0);
+  readback.facing_bits.assign(num_pixels, 0);
 
   const std::vector<CastBox> boxes(scene.boxes.begin(), scene.boxes.end());
   const PrimaryRays primary_rays(camera);
@@ -224,7 +235,7 @@ SyntheticReadback Render(const BoxScene& scene,
     }
     if (surfaces.empty()) return;
     for (const Light& light : lights) {
-      CastShadows(light, boxes, scene.floor_half_size, surfaces, readback.shadow_bits);
+      CastShadows(light, boxes, scene.floor_half_size, surfaces, readback);
     }
   };
 

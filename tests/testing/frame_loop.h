@@ -42,6 +42,7 @@ inline void Fill(const SyntheticReadback& view,
   readback->depth_kind = DepthKind::kCameraZ;
   readback->depth.assign(view.depth.begin(), view.depth.end());
   readback->shadow_bits.assign(view.shadow_bits.begin(), view.shadow_bits.end());
+  readback->facing_bits.clear();
   readback->lights.assign(lights.begin(), lights.end());
   readback->map = {1024, 1024};
 }

@@ -70,7 +70,7 @@ inline void ExpectCovers(const LightMatrix& matrix,
   const Eigen::Matrix4d map_from_screen = matrix.map_from_world * readback.camera.WorldFromScreen();
   const uint32_t mask = uint32_t{1} << light.shadow_bit;
   const bool any_shadow =
-      BuildDepthTiles(readback, affine_depth, SurfaceFilter{mask}).num_surfaces > 0;
+      BuildDepthTiles(readback, affine_depth, {readback.shadow_bits, mask}).num_surfaces > 0;
   double w_min = 1e300, z_min = 1e300, z_max = -1e300, outside = -1e300, z_max_in_map = -1e300;
   for (int y = 0; y < readback.height(); ++y) {
     for (int x = 0; x < readback.width(); ++x) {

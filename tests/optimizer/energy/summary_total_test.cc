@@ -223,7 +223,7 @@ TEST(SummaryTotal, FramesWithoutShadowHaveNoPartInTheHull) {
   for (uint32_t& bits : frame.shadow_bits) bits = 0;
   const auto lit = Summarize(frame.View(), sun);
   ASSERT_THAT(lit, IsOk());
-  EXPECT_TRUE(lit->cover.nothing_shadowed);
+  EXPECT_TRUE(lit->cover.nothing_to_cover);
   const auto alone = MergeSummaries({*shadowed}, sun);
   const auto both = MergeSummaries({*lit, *shadowed}, sun);
   ASSERT_THAT(alone, IsOk());

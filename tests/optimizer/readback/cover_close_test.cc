@@ -104,8 +104,10 @@ TEST(CoverCloseBy, IsThatOfAllRaysTakenAtOnce) {
       continue;
     }
     ASSERT_THAT(cover, IsOk());
-    const DepthTiles tiles = BuildDepthTiles(
-        surfaces.readback, surfaces.affine_depth, {uint32_t{1} << lamp.light.shadow_bit});
+    const DepthTiles tiles =
+        BuildDepthTiles(surfaces.readback,
+                        surfaces.affine_depth,
+                        {surfaces.readback.shadow_bits, uint32_t{1} << lamp.light.shadow_bit});
     if (!BoxesSurround(surfaces, tiles, lamp.light)) continue;  // cover_test.cc
     ++num_one_by_one;
     EXPECT_THAT(Eigen::Vector3d(cover->normalized_from_ray.row(2)), MatrixNear(*axis, 1e-9));

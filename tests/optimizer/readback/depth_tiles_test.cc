@@ -80,8 +80,8 @@ DepthTile Plainly(const Readback& readback,
 void ExpectTilesOf(const PlaneReadback& readback, uint32_t mask) {
   const Readback view = readback.View();
   const AffineDepth affine_depth(view.camera, view.depth_kind);
-  const DepthTiles tiles = BuildDepthTiles(view, affine_depth, {mask});
-  EXPECT_EQ(tiles.filter.shadow_mask, mask);
+  const DepthTiles tiles = BuildDepthTiles(view, affine_depth, {view.shadow_bits, mask});
+  EXPECT_EQ(tiles.filter.mask, mask);
   const DepthTile whole =
       Plainly(view, affine_depth, mask, {0, 0, view.width(), view.height(), 0.0, 0.0, 0});
   EXPECT_EQ(tiles.num_surfaces, whole.num_surfaces);
@@ -132,7 +132,8 @@ TEST(BuildDepthTiles, CoarseTilesAreMadeOfFinerOnes) {
   Random random(182);
   const PlaneReadback readback = RandomReadback(random, DepthKind::kCameraZ, false, 323, 177);
   const AffineDepth affine_depth(readback.camera, readback.kind);
-  const DepthTiles tiles = BuildDepthTiles(readback.View(), affine_depth, {1u});
+  const DepthTiles tiles =
+      BuildDepthTiles(readback.View(), affine_depth, {readback.shadow_bits, 1u});
   ASSERT_GE(tiles.grids.size(), 2u);
   constexpr int kSide = DepthTiles::kTilesPerSide;
   for (size_t level = 1; level < tiles.grids.size(); ++level) {
@@ -159,9 +160,11 @@ TEST(ForEachSurface, VisitsWhatTheFilterLetsThroughInRowOrder) {
   const DepthTile tile = {5, 3, 33, 27, 0.0, 0.0, 0};
   for (const uint32_t mask : {0u, 1u, 2u, 8u}) {
     std::vector<std::pair<size_t, double>> visited, expected;
-    ForEachSurface(readback.View(), affine_depth, {mask}, tile, [&](int x, int y, double d) {
-      visited.emplace_back(readback.Index(x, y), d);
-    });
+    ForEachSurface(readback.View(),
+                   affine_depth,
+                   {readback.shadow_bits, mask},
+                   tile,
+                   [&](int x, int y, double d) { visited.emplace_back(readback.Index(x, y), d); });
     for (int y = 3; y < 27; ++y) {
       for (int x = 5; x < 33; ++x) {
         const size_t pixel = readback.Index(x, y);

@@ -135,7 +135,7 @@ TEST(FindSurfaces, TilesAreThoseOfAllReceivers) {
   const testing::TestScene scene(2, 1, 323, 177);
   const Surfaces surfaces = *FindSurfaces(scene.View(), 1u, {});
   EXPECT_EQ(surfaces.counts[0].invalid_depth, 0);
-  EXPECT_EQ(surfaces.tiles.filter.shadow_mask, 0u);
+  EXPECT_EQ(surfaces.tiles.filter.mask, 0u);
   EXPECT_EQ(surfaces.tiles.num_surfaces, surfaces.counts[0].receivers);
   EXPECT_EQ(surfaces.tiles.num_surfaces + surfaces.tiles.num_background, 323 * 177);
 }

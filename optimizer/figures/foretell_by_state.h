@@ -1,0 +1,28 @@
+// optimizer/figures/foretell_by_state.h
+//
+// The forecast of ForetellWrongShare() where the read-back knows which surfaces face the light.
+// In:   Readback with the third state, PixelFootprints of the map.
+// Out:  the share of the image's pixels that will be wrong.   math.md (13), (14)
+#pragma once
+
+#include <optional>
+
+#include "absl/status/statusor.h"
+#include "geometry/border.h"
+#include "geometry/light.h"
+#include "geometry/map_size.h"
+#include "optimizer/figures/pixel_footprint.h"
+#include "optimizer/readback/readback.h"
+
+namespace lightfit {
+
+// Requires readback.KnowsFacing(light.shadow_bit). What lies outside the map counts where the
+// border is wrong about it, and what is likely to lie there unseen; without a border nothing does,
+// as somebody else counts it. CancelledError once a StopScope says so.
+absl::StatusOr<double> ForetellByState(const Readback& readback,
+                                       const Light& light,
+                                       const PixelFootprints& footprints,
+                                       MapSize map,
+                                       std::optional<Border> border);
+
+}  // namespace lightfit
