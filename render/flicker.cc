@@ -49,7 +49,7 @@ absl::StatusOr<Flicker> MeasureFlicker(const RayCaster& caster,
                                        const Light& light,
                                        const JudgedMap& a,
                                        const JudgedMap& b,
-                                       const BiasOptions& bias) {
+                                       const JudgeOptions& options) {
   if (seen_in_both.size() != image.pixels.size()) {
     return absl::InvalidArgumentError(
         absl::StrFormat("seen_in_both has %d pixels, the image %d: want those of the image",
@@ -57,10 +57,10 @@ absl::StatusOr<Flicker> MeasureFlicker(const RayCaster& caster,
                         image.pixels.size()));
   }
   const absl::StatusOr<ShadowImage> shadows_a =
-      JudgeMatrix(caster, image, truth, light, a.map_from_world, a.size, bias);
+      JudgeFirstPhase(caster, image, truth, light, a, options);
   if (!shadows_a.ok()) return shadows_a.status();
   const absl::StatusOr<ShadowImage> shadows_b =
-      JudgeMatrix(caster, image, truth, light, b.map_from_world, b.size, bias);
+      JudgeFirstPhase(caster, image, truth, light, b, options);
   if (!shadows_b.ok()) return shadows_b.status();
   return CountFlips(*shadows_a, *shadows_b, seen_in_both);
 }

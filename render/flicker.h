@@ -2,11 +2,12 @@
 //
 // Shadow pixels that flip from one frame to the next while nothing in the scene does.
 // In:   the surfaces of one frame, those of them that the other frame sees too, the true lighting,
-//       and a light's matrix in each frame.
+//       and a light's map in each frame.
 // Out:  Flicker: at how many of those pixels the two maps say different things.
 //
 // Both maps are asked at the same surfaces, those of one frame, whose true state is one and the
-// same: what differs is the maps' doing alone.   math.md 7
+// same: what differs is the maps' doing alone. Of the phases that wrong pixels are counted over
+// (JudgeOptions::phases) flips are those between the first of either map.   math.md 7
 #pragma once
 
 #include <cstdint>
@@ -32,20 +33,14 @@ absl::StatusOr<std::vector<uint8_t>> SeenFrom(const Camera& other,
                                               const RayCaster& caster,
                                               const SurfaceImage& image);
 
-// The matrices of both frames judged on the image of one of them, see JudgeMatrix(). All three
+// The maps of both frames judged on the image of one of them, see JudgeFirstPhase(). All three
 // arguments are of that image's size; what is 0 in `seen_in_both` does not count.
 Flicker CountFlips(const ShadowImage& a,
                    const ShadowImage& b,
                    absl::Span<const uint8_t> seen_in_both);
 
-// A light's matrix and its map's size.
-struct JudgedMap {
-  const Eigen::Matrix4d& map_from_world;
-  MapSize size;
-};
-
-// The same from the matrices. Errors are those of JudgeMatrix(), and InvalidArgument for a mask of
-// another size.
+// The same from the maps, each with its own border. Errors are those of JudgeMatrix(), and
+// InvalidArgument for a mask of another size.
 absl::StatusOr<Flicker> MeasureFlicker(const RayCaster& caster,
                                        const SurfaceImage& image,
                                        absl::Span<const uint8_t> seen_in_both,
@@ -53,6 +48,6 @@ absl::StatusOr<Flicker> MeasureFlicker(const RayCaster& caster,
                                        const Light& light,
                                        const JudgedMap& a,
                                        const JudgedMap& b,
-                                       const BiasOptions& bias = {});
+                                       const JudgeOptions& options = {});
 
 }  // namespace lightfit

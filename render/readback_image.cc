@@ -8,6 +8,8 @@ Readback ReadbackImage::View() const {
   readback.depth = depth;
   readback.depth_kind = DepthKind::kCameraZ;
   readback.shadow_bits = shadow_bits;
+  readback.facing_bits = facing_bits;
+  readback.facing_lights = facing_lights;
   return readback;
 }
 
@@ -20,6 +22,7 @@ ReadbackImage ReadbackOf(const SurfaceImage& image) {
                                                 : kReadbackBackground);
   }
   readback.shadow_bits.assign(image.pixels.size(), 0);
+  readback.facing_bits.assign(image.pixels.size(), 0);
   return readback;
 }
 
@@ -27,7 +30,11 @@ void AddShadow(absl::Span<const Lighting> lighting, int shadow_bit, ReadbackImag
   const uint32_t bit = uint32_t{1} << shadow_bit;
   for (size_t i = 0; i < lighting.size(); ++i) {
     if (lighting[i] == Lighting::kShadowed) readback->shadow_bits[i] |= bit;
+    if (lighting[i] == Lighting::kShadowed || lighting[i] == Lighting::kLit) {
+      readback->facing_bits[i] |= bit;
+    }
   }
+  readback->facing_lights |= bit;
 }
 
 absl::StatusOr<ReadbackImage> RenderReadback(const RayCaster& caster,

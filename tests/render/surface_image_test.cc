@@ -112,10 +112,15 @@ TEST(RenderReadback, HoldsDepthAndTheBitOfEachLight) {
     for (size_t i = 0; i < lighting.size(); ++i) {
       EXPECT_EQ(readback->shadow_bits[i] >> light.shadow_bit & 1U,
                 lighting[i] == Lighting::kShadowed ? 1U : 0U);
-      seen |= readback->shadow_bits[i];
+      EXPECT_EQ(readback->facing_bits[i] >> light.shadow_bit & 1U,
+                lighting[i] == Lighting::kShadowed || lighting[i] == Lighting::kLit ? 1U : 0U);
+      seen |= readback->facing_bits[i];
     }
+    EXPECT_TRUE(readback->View().KnowsFacing(light.shadow_bit));
   }
-  EXPECT_EQ(seen & ~(1U | 1U << 31 | 1U << lights[2].shadow_bit), 0U);
+  const uint32_t used = 1U | 1U << 31 | 1U << lights[2].shadow_bit;
+  EXPECT_EQ(seen, used);
+  EXPECT_EQ(readback->facing_lights, used);
   for (size_t i = 0; i < image->pixels.size(); ++i) {
     EXPECT_EQ(readback->depth[i],
               image->pixels[i].is_surface() ? static_cast<float>(image->pixels[i].camera_z)

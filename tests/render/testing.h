@@ -91,6 +91,19 @@ inline RayCaster Caster(Scene scene, int num_threads = 2) {
   return *std::move(caster);
 }
 
+// FNV-1a over all bytes.
+inline uint64_t HashOf(const Scene& scene) {
+  uint64_t hash = 14695981039346656037ULL;
+  const auto add = [&hash](const void* data, size_t num_bytes) {
+    for (size_t i = 0; i < num_bytes; ++i) {
+      hash = (hash ^ static_cast<const unsigned char*>(data)[i]) * 1099511628211ULL;
+    }
+  };
+  for (const Eigen::Vector3f& vertex : scene.vertices) add(vertex.data(), 3 * sizeof(float));
+  for (const Eigen::Vector3i& triangle : scene.triangles) add(triangle.data(), 3 * sizeof(int));
+  return hash;
+}
+
 struct BruteHits {
   std::vector<double> distances;  // ascending
   int first = -1;                 // triangle of the nearest

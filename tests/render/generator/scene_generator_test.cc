@@ -1,18 +1,18 @@
-#include "render/scene_generator.h"
+#include "render/generator/scene_generator.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <set>
 
-#include "render/shapes.h"
+#include "render/generator/shapes.h"
 #include "tests/render/testing.h"
 #include "tests/testing/matchers.h"
 
 namespace lightfit {
 namespace {
 
+using testing::HashOf;
 using ::testing::HasSubstr;
 using testing::IsOk;
 using testing::StatusIs;
@@ -23,19 +23,6 @@ SceneGeneratorOptions Options(uint64_t seed, int num_objects, int64_t num_triang
   options.num_objects = num_objects;
   options.num_triangles = num_triangles;
   return options;
-}
-
-// FNV-1a over all bytes.
-uint64_t HashOf(const Scene& scene) {
-  uint64_t hash = 14695981039346656037ULL;
-  const auto add = [&hash](const void* data, size_t num_bytes) {
-    for (size_t i = 0; i < num_bytes; ++i) {
-      hash = (hash ^ static_cast<const unsigned char*>(data)[i]) * 1099511628211ULL;
-    }
-  };
-  for (const Eigen::Vector3f& vertex : scene.vertices) add(vertex.data(), 3 * sizeof(float));
-  for (const Eigen::Vector3i& triangle : scene.triangles) add(triangle.data(), 3 * sizeof(int));
-  return hash;
 }
 
 TEST(GenerateScene, HasAsManyTrianglesAsAsked) {

@@ -1,14 +1,15 @@
-#include "render/scene_generator.h"
+#include "render/generator/scene_generator.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_format.h"
-#include "render/shapes.h"
+#include "render/generator/dice.h"
+#include "render/generator/room.h"
+#include "render/generator/shapes.h"
 
 namespace lightfit {
 
@@ -17,6 +18,7 @@ namespace {
 constexpr int kMaxObjects = 100'000;
 constexpr int64_t kMaxTriangles = 200'000'000;
 constexpr int64_t kMinTrianglesPerObject = 100;
+constexpr int64_t kMinTrianglesOfRoom = 20'000;
 
 // Sizes are meant for a floor of this half size and scale with it.
 constexpr double kStandardFloor = 20.0;
@@ -24,21 +26,6 @@ constexpr double kStandardFloor = 20.0;
 // Nothing stands where the viewer does.
 const Eigen::Vector2d kViewer(0.0, 18.0);  // x, z
 constexpr double kViewerRoom = 2.95;       // covers |x| < 1.5 for z > 15.5
-
-class Dice {
- public:
-  explicit Dice(uint64_t seed) : engine_(seed) {}
-
-  // The distributions of <random> differ from library to library.
-  double Uniform(double low, double high) {
-    return low + (high - low) * 0x1p-53 * static_cast<double>(engine_() >> 11);
-  }
-  int Below(int count) { return static_cast<int>(engine_() % static_cast<uint64_t>(count)); }
-  bool Chance(double share) { return Uniform(0.0, 1.0) < share; }
-
- private:
-  std::mt19937_64 engine_;
-};
 
 // A shape in its own space, scaled, tilted and put in place.
 struct Object {
@@ -217,7 +204,17 @@ void AppendFloor(double half_size, Scene* scene) {
   scene->triangles.emplace_back(first, first + 2, first + 3);
 }
 
-absl::Status Validate(const SceneGeneratorOptions& options) {
+absl::Status ValidateRoom(const SceneGeneratorOptions& options) {
+  if (options.num_triangles >= kMinTrianglesOfRoom && options.num_triangles <= kMaxTriangles) {
+    return absl::OkStatus();
+  }
+  return absl::InvalidArgumentError(absl::StrFormat("scene: num_triangles = %d, want %d to %d",
+                                                    options.num_triangles,
+                                                    kMinTrianglesOfRoom,
+                                                    kMaxTriangles));
+}
+
+absl::Status ValidateFloor(const SceneGeneratorOptions& options) {
   if (options.num_objects < 1 || options.num_objects > kMaxObjects) {
     return absl::InvalidArgumentError(
         absl::StrFormat("scene: num_objects = %d, want 1 to %d", options.num_objects, kMaxObjects));
@@ -239,10 +236,7 @@ absl::Status Validate(const SceneGeneratorOptions& options) {
   return absl::OkStatus();
 }
 
-}  // namespace
-
-absl::StatusOr<Scene> GenerateScene(const SceneGeneratorOptions& options) {
-  if (absl::Status status = Validate(options); !status.ok()) return status;
+Scene ObjectsOnFloor(const SceneGeneratorOptions& options) {
   Dice dice(options.seed);
   std::vector<Object> objects;
   std::vector<int> kinds(kNumKinds);
@@ -270,6 +264,15 @@ absl::StatusOr<Scene> GenerateScene(const SceneGeneratorOptions& options) {
     total_share -= object.share;
   }
   return scene;
+}
+
+}  // namespace
+
+absl::StatusOr<Scene> GenerateScene(const SceneGeneratorOptions& options) {
+  const bool is_room = options.kind == SceneKind::kRoom;
+  absl::Status status = is_room ? ValidateRoom(options) : ValidateFloor(options);
+  if (!status.ok()) return status;
+  return is_room ? MakeRoom(options.seed, options.num_triangles).scene : ObjectsOnFloor(options);
 }
 
 }  // namespace lightfit

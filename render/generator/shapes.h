@@ -1,4 +1,4 @@
-// render/shapes.h
+// render/generator/shapes.h
 //
 // Tessellated solids and tubes: what the generator puts on the floor.
 // In:   a shape's parameters and about how many triangles.

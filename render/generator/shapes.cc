@@ -1,4 +1,4 @@
-#include "render/shapes.h"
+#include "render/generator/shapes.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
