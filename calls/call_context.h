@@ -11,7 +11,8 @@ namespace lightfit {
 // More than this is refused with RESOURCE_EXHAUSTED before any memory is taken for it.
 struct CallLimits {
   int64_t max_pixels = int64_t{64} << 20;  // of one read-back: 8192 x 8192
-  // Of one read-back, at the borders of shadows: each takes some 250 bytes while lights are fitted.
+  // Of one read-back, at the borders of shadows and, where that is known, of surfaces that face a
+  // light: each takes some 250 bytes while lights are fitted.
   int64_t max_boundary_pixels = int64_t{1} << 20;
   int max_matrices = 1024;   // EvaluateRequest.matrices
   int max_summaries = 4096;  // summaries and summary_files together

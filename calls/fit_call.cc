@@ -34,8 +34,12 @@ std::vector<LightFit> FitRequestLights(const std::vector<RequestLight>& lights,
     fit.light = light.light;
     fit.matrix = light.status.ok() ? std::move(matrices[next++]) : light.status;
     if (!foretells || !fit.matrix.ok()) continue;
-    const absl::StatusOr<double> wrong_share =
-        ForetellWrongShare(readback, light.light, fit.matrix->map_from_world, map, options.samples);
+    const absl::StatusOr<double> wrong_share = ForetellWrongShare(readback,
+                                                                  light.light,
+                                                                  fit.matrix->map_from_world,
+                                                                  map,
+                                                                  options.samples,
+                                                                  fit.matrix->border);
     if (wrong_share.ok()) fit.wrong_share = *wrong_share;
   }
   return fits;

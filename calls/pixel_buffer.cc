@@ -1,8 +1,12 @@
 #include "calls/pixel_buffer.h"
 
+#include <google/protobuf/repeated_field.h>
+
 #include <Eigen/Core>
+#include <algorithm>
 #include <bit>
 #include <cstring>
+#include <utility>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
@@ -18,7 +22,6 @@ static_assert(std::endian::native == std::endian::little,
               "messages are little-endian: convert words here before you port this");
 
 constexpr size_t kMaxSourceBytes = 4096;
-constexpr uint8_t kLeastBlocked = 128;  // of a plane's values
 
 int64_t BytesOf(v1::DepthFormat format) { return format == v1::DEPTH_FORMAT_FLOAT16 ? 2 : 4; }
 
@@ -37,19 +40,95 @@ absl::StatusOr<v1::DepthFormat> DepthFormatOf(const v1::Readback& proto) {
   }
 }
 
-absl::StatusOr<v1::ShadowFormat> ShadowFormatOf(const v1::Readback& proto) {
-  switch (proto.shadow_format()) {
+// What a read-back says of one kind of bits.
+struct BitsFields {
+  const char* name;
+  v1::ShadowFormat format;
+  const std::string& bits;
+  const google::protobuf::RepeatedPtrField<std::string>& planes;
+  uint32_t lights;  // 0: not said
+};
+
+BitsFields ShadowFields(const v1::Readback& proto) {
+  return {"shadow", proto.shadow_format(), proto.shadow_bits(), proto.shadow_planes(), 0};
+}
+
+BitsFields FacingFields(const v1::Readback& proto) {
+  return {"facing",
+          proto.facing_format(),
+          proto.facing_bits(),
+          proto.facing_planes(),
+          proto.facing_lights()};
+}
+
+BitsFields MappedFields(const v1::Readback& proto) {
+  return {"mapped",
+          proto.mapped_format(),
+          proto.mapped_bits(),
+          proto.mapped_planes(),
+          proto.mapped_lights()};
+}
+
+// The lights whose planes are here.
+uint32_t LightsWithPlanes(const BitsFields& fields) {
+  uint32_t lights = 0;
+  for (int plane = 0; plane < std::min<int>(fields.planes.size(), kMaxLights); ++plane) {
+    if (!fields.planes[plane].empty()) lights |= uint32_t{1} << plane;
+  }
+  return lights;
+}
+
+absl::StatusOr<BitsHeader> BitsHeaderOf(const BitsFields& fields,
+                                        int num_lights,
+                                        int64_t num_pixels) {
+  const uint32_t all = ~uint32_t{0} >> (kMaxLights - num_lights);
+  BitsHeader header = {fields.name, fields.format, all, num_lights, num_pixels};
+  switch (fields.format) {
     case v1::SHADOW_FORMAT_UNSPECIFIED:
-      return proto.shadow_planes().empty() ? v1::SHADOW_FORMAT_BITS : v1::SHADOW_FORMAT_PLANES;
+      if (!fields.bits.empty()) header.format = v1::SHADOW_FORMAT_BITS;
+      if (!fields.planes.empty()) header.format = v1::SHADOW_FORMAT_PLANES;
+      return header;
     case v1::SHADOW_FORMAT_BITS:
     case v1::SHADOW_FORMAT_PLANES:
-      return proto.shadow_format();
+      return header;
     default:
       return absl::InvalidArgumentError(
-          absl::StrFormat("readback.shadow_format = %d: this version does not know it, want "
+          absl::StrFormat("readback.%s_format = %d: this version does not know it, want "
                           "SHADOW_FORMAT_BITS or SHADOW_FORMAT_PLANES",
-                          proto.shadow_format()));
+                          fields.name,
+                          fields.format));
   }
+}
+
+// Every light has a shadow.
+absl::StatusOr<BitsHeader> ShadowHeaderOf(const v1::Readback& proto,
+                                          int num_lights,
+                                          int64_t num_pixels) {
+  absl::StatusOr<BitsHeader> header = BitsHeaderOf(ShadowFields(proto), num_lights, num_pixels);
+  if (header.ok() && header->is_absent()) header->format = v1::SHADOW_FORMAT_BITS;
+  return header;
+}
+
+// Bits that there may be none of, or of some lights alone.
+absl::StatusOr<BitsHeader> OptionalHeaderOf(const BitsFields& fields,
+                                            int num_lights,
+                                            int64_t num_pixels) {
+  absl::StatusOr<BitsHeader> header = BitsHeaderOf(fields, num_lights, num_pixels);
+  if (!header.ok()) return header.status();
+  if ((fields.lights & ~header->lights) != 0) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("readback.%s_lights = %#x: there are %d lights, want no bit beyond theirs",
+                        fields.name,
+                        fields.lights,
+                        num_lights));
+  }
+  if (fields.lights != 0) {
+    header->lights = fields.lights;
+  } else if (!fields.planes.empty()) {
+    header->lights = LightsWithPlanes(fields);
+  }
+  if (header->lights == 0) header->format = v1::SHADOW_FORMAT_UNSPECIFIED;
+  return header;
 }
 
 absl::Status InReadback(const absl::Status& status) {
@@ -59,44 +138,41 @@ absl::Status InReadback(const absl::Status& status) {
   return absl::Status(status.code(), absl::StrCat(prefix, status.message()));
 }
 
-// `bytes` more of `field`, of which `arrived` are there and `want` are wanted in all.
-absl::Status CheckPiece(absl::string_view field,
-                        absl::string_view bytes,
-                        int64_t value_bytes,
-                        int64_t arrived,
-                        int64_t want) {
-  const int64_t size = static_cast<int64_t>(bytes.size());
-  if (size % value_bytes != 0) {
-    return absl::InvalidArgumentError(absl::StrFormat(
-        "%s: %d bytes, want whole values of %d bytes each", field, size, value_bytes));
-  }
-  if (size > want - arrived) {
-    return absl::InvalidArgumentError(
-        absl::StrFormat("%s: %d bytes, want %d: width * height values of %d bytes, as in "
-                        "readback.camera and the formats",
-                        field,
-                        arrived + size,
-                        want,
-                        value_bytes));
-  }
-  return absl::OkStatus();
-}
-
-absl::Status CheckArrived(absl::string_view field, int64_t arrived, int64_t want) {
-  if (arrived == want) return absl::OkStatus();
-  return absl::InvalidArgumentError(
-      absl::StrFormat("%s: %d bytes, want %d: width * height values as in readback.camera and the "
-                      "formats",
-                      field,
-                      arrived,
-                      want));
-}
-
-std::string PlaneField(int plane) { return absl::StrFormat("readback.shadow_planes[%d]", plane); }
-
 // Whether words of 4 bytes can be read where they are.
 bool IsAligned(const std::string& bytes) {
   return reinterpret_cast<uintptr_t>(bytes.data()) % alignof(uint32_t) == 0;
+}
+
+absl::Status CheckWholeDepth(const ReadbackHeader& header, absl::string_view bytes) {
+  constexpr char kField[] = "readback.depth";
+  absl::Status status =
+      CheckPiece(kField, bytes, BytesOf(header.depth_format), 0, header.depth_bytes());
+  if (!status.ok()) return status;
+  return CheckArrived(kField, static_cast<int64_t>(bytes.size()), header.depth_bytes());
+}
+
+// Whether a BitBuffer would hold what is there already.
+bool IsUsableAsIs(const BitsFields& fields, const BitsHeader& header) {
+  if (header.is_absent()) return fields.bits.empty();
+  return header.has_bits() && fields.planes.empty() &&
+         static_cast<int64_t>(fields.bits.size()) == header.bits_bytes() && IsAligned(fields.bits);
+}
+
+absl::Status AppendTo(const BitsFields& fields, BitBuffer* buffer) {
+  absl::Status status = buffer->AppendBits(fields.bits);
+  for (int plane = 0; plane < fields.planes.size() && status.ok(); ++plane) {
+    status = buffer->AppendPlane(plane, fields.planes[plane]);
+  }
+  return status;
+}
+
+absl::Status AppendTo(const std::string& bits,
+                      int plane_index,
+                      const std::string& plane,
+                      BitBuffer* buffer) {
+  absl::Status status = buffer->AppendBits(bits);
+  if (status.ok() && !plane.empty()) status = buffer->AppendPlane(plane_index, plane);
+  return status;
 }
 
 template <typename Word>
@@ -108,14 +184,9 @@ absl::Span<const Word> WordsOf(const std::string& bytes) {
 
 int64_t ReadbackHeader::depth_bytes() const { return num_pixels() * BytesOf(depth_format); }
 
-int64_t ReadbackHeader::shadow_bits_bytes() const {
-  return num_pixels() * static_cast<int64_t>(sizeof(uint32_t));
-}
-
-int64_t ReadbackHeader::shadow_plane_bytes() const { return num_pixels(); }
-
 int64_t ReadbackHeader::buffer_bytes() const {
-  return num_pixels() * static_cast<int64_t>(sizeof(float) + sizeof(uint32_t));
+  return num_pixels() * int64_t{sizeof(float)} + shadow.buffer_bytes() + facing.buffer_bytes() +
+         mapped.buffer_bytes();
 }
 
 absl::StatusOr<ReadbackHeader> ReadbackHeaderFromProto(const v1::Readback& proto,
@@ -144,38 +215,60 @@ absl::StatusOr<ReadbackHeader> ReadbackHeaderFromProto(const v1::Readback& proto
   if (!camera.ok()) return InReadback(camera.status());
   const absl::StatusOr<v1::DepthFormat> depth_format = DepthFormatOf(proto);
   if (!depth_format.ok()) return depth_format.status();
-  const absl::StatusOr<v1::ShadowFormat> shadow_format = ShadowFormatOf(proto);
-  if (!shadow_format.ok()) return shadow_format.status();
+  absl::StatusOr<BitsHeader> shadow = ShadowHeaderOf(proto, num_lights, num_pixels);
+  if (!shadow.ok()) return shadow.status();
+  absl::StatusOr<BitsHeader> facing = OptionalHeaderOf(FacingFields(proto), num_lights, num_pixels);
+  if (!facing.ok()) return facing.status();
+  absl::StatusOr<BitsHeader> mapped = OptionalHeaderOf(MappedFields(proto), num_lights, num_pixels);
+  if (!mapped.ok()) return mapped.status();
 
   ReadbackHeader header;
   header.camera = camera->camera;
   header.depth_kind = camera->depth_kind.value_or(DepthKind::kCameraZ);
   header.depth_format = *depth_format;
-  header.shadow_format = *shadow_format;
-  header.num_lights = num_lights;
+  header.shadow = *std::move(shadow);
+  header.facing = *std::move(facing);
+  header.mapped = *std::move(mapped);
   if (absl::Status status = ValidateCamera(header.camera, header.depth_kind); !status.ok()) {
     return InReadback(status);
   }
   return header;
 }
 
+void ClearPixels(v1::Readback* readback) {
+  readback->clear_depth();
+  readback->clear_shadow_bits();
+  readback->clear_shadow_planes();
+  readback->clear_facing_bits();
+  readback->clear_facing_planes();
+  readback->clear_mapped_bits();
+  readback->clear_mapped_planes();
+}
+
 PixelBuffer::PixelBuffer(const ReadbackHeader& header)
-    : header_(header), num_plane_bytes_(header.num_lights, 0) {}
+    : header_(header), shadow_(header.shadow), facing_(header.facing), mapped_(header.mapped) {}
 
 absl::Status PixelBuffer::Append(const v1::Readback& proto) {
   absl::Status status = AppendDepth(proto.depth());
-  if (status.ok()) status = AppendShadowBits(proto.shadow_bits());
-  for (int plane = 0; plane < proto.shadow_planes_size() && status.ok(); ++plane) {
-    status = AppendShadowPlane(plane, proto.shadow_planes(plane));
-  }
+  if (status.ok()) status = AppendTo(ShadowFields(proto), &shadow_);
+  if (status.ok()) status = AppendTo(FacingFields(proto), &facing_);
+  if (status.ok()) status = AppendTo(MappedFields(proto), &mapped_);
   return status;
 }
 
 absl::Status PixelBuffer::Append(const v1::PixelChunk& chunk) {
   absl::Status status = AppendDepth(chunk.depth());
-  if (status.ok()) status = AppendShadowBits(chunk.shadow_bits());
-  if (status.ok() && !chunk.shadow_plane().empty()) {
-    status = AppendShadowPlane(chunk.shadow_plane_index(), chunk.shadow_plane());
+  if (status.ok()) {
+    status =
+        AppendTo(chunk.shadow_bits(), chunk.shadow_plane_index(), chunk.shadow_plane(), &shadow_);
+  }
+  if (status.ok()) {
+    status =
+        AppendTo(chunk.facing_bits(), chunk.facing_plane_index(), chunk.facing_plane(), &facing_);
+  }
+  if (status.ok()) {
+    status =
+        AppendTo(chunk.mapped_bits(), chunk.mapped_plane_index(), chunk.mapped_plane(), &mapped_);
   }
   return status;
 }
@@ -202,86 +295,54 @@ absl::Status PixelBuffer::AppendDepth(absl::string_view bytes) {
   return absl::OkStatus();
 }
 
-absl::Status PixelBuffer::AppendShadowBits(absl::string_view bytes) {
-  if (bytes.empty()) return absl::OkStatus();
-  if (header_.shadow_format != v1::SHADOW_FORMAT_BITS) {
-    return absl::InvalidArgumentError(
-        "readback.shadow_bits: has pixels beside readback.shadow_planes, want one of them");
-  }
-  absl::Status status = CheckPiece("readback.shadow_bits",
-                                   bytes,
-                                   sizeof(uint32_t),
-                                   num_shadow_bits_bytes_,
-                                   header_.shadow_bits_bytes());
-  if (!status.ok()) return status;
-  num_shadow_bits_bytes_ += static_cast<int64_t>(bytes.size());
-  shadow_bits_.reserve(header_.num_pixels());
-  const size_t first = shadow_bits_.size();
-  shadow_bits_.resize(first + bytes.size() / sizeof(uint32_t));
-  std::memcpy(shadow_bits_.data() + first, bytes.data(), bytes.size());
-  return absl::OkStatus();
-}
-
-absl::Status PixelBuffer::AppendShadowPlane(int plane, absl::string_view bytes) {
-  if (header_.shadow_format != v1::SHADOW_FORMAT_PLANES) {
-    return absl::InvalidArgumentError(
-        "readback.shadow_planes: has pixels, but readback.shadow_format says bits; want "
-        "SHADOW_FORMAT_PLANES before planes in chunks");
-  }
-  if (plane < 0 || plane >= header_.num_lights) {
-    return absl::InvalidArgumentError(
-        absl::StrFormat("shadow plane %d: there are %d lights, want one plane for each, counted "
-                        "from 0",
-                        plane,
-                        header_.num_lights));
-  }
-  int64_t& arrived = num_plane_bytes_[plane];
-  if (absl::Status status =
-          CheckPiece(PlaneField(plane), bytes, 1, arrived, header_.shadow_plane_bytes());
-      !status.ok()) {
-    return status;
-  }
-  shadow_bits_.resize(header_.num_pixels());
-  uint32_t* const words = shadow_bits_.data() + arrived;
-  const uint32_t bit = uint32_t{1} << plane;
-  for (size_t i = 0; i < bytes.size(); ++i) {
-    if (static_cast<uint8_t>(bytes[i]) >= kLeastBlocked) words[i] |= bit;
-  }
-  arrived += static_cast<int64_t>(bytes.size());
-  return absl::OkStatus();
-}
-
 absl::Status PixelBuffer::CheckComplete() const {
   absl::Status status = CheckArrived("readback.depth", num_depth_bytes_, header_.depth_bytes());
-  if (header_.shadow_format == v1::SHADOW_FORMAT_BITS) {
-    if (status.ok()) {
-      status =
-          CheckArrived("readback.shadow_bits", num_shadow_bits_bytes_, header_.shadow_bits_bytes());
-    }
-    return status;
-  }
-  for (int plane = 0; plane < header_.num_lights && status.ok(); ++plane) {
-    status = CheckArrived(PlaneField(plane), num_plane_bytes_[plane], header_.shadow_plane_bytes());
+  for (const BitBuffer* bits : {&shadow_, &facing_, &mapped_}) {
+    if (status.ok()) status = bits->CheckComplete();
   }
   return status;
 }
 
+Readback PixelBuffer::View() const {
+  return ReadbackOf(header_, depth_, shadow_.words(), facing_.words(), mapped_.words());
+}
+
+Readback ReadbackOf(const ReadbackHeader& header,
+                    absl::Span<const float> depth,
+                    absl::Span<const uint32_t> shadow_bits,
+                    absl::Span<const uint32_t> facing_bits,
+                    absl::Span<const uint32_t> mapped_bits) {
+  Readback readback;
+  readback.camera = header.camera;
+  readback.depth = depth;
+  readback.depth_kind = header.depth_kind;
+  readback.shadow_bits = shadow_bits;
+  readback.facing_bits = facing_bits;
+  readback.facing_lights = header.facing.lights;
+  readback.mapped_bits = mapped_bits;
+  readback.mapped_lights = header.mapped.lights;
+  return readback;
+}
+
 absl::Status CheckBoundary(const Readback& readback, const CallLimits& limits) {
   const size_t width = readback.width();
-  constexpr uint32_t kAllLights = ~uint32_t{0};
   std::vector<int32_t> columns(width);
   int64_t count = 0;
-  for (int y = 1; y + 1 < readback.height(); ++y) {
-    const uint32_t* const row = readback.shadow_bits.data() + width * y;
-    count +=
-        static_cast<int64_t>(internal::ScanBoundary(row, width, width, kAllLights, columns.data()));
-  }
+  const auto add = [&](absl::Span<const uint32_t> bits, uint32_t lights) {
+    for (int y = 1; y + 1 < readback.height() && !bits.empty(); ++y) {
+      count += static_cast<int64_t>(
+          internal::ScanBoundary(bits.data() + width * y, width, width, lights, columns.data()));
+    }
+  };
+  add(readback.shadow_bits, ~uint32_t{0});
+  add(readback.facing_bits, readback.facing_lights);
   if (count <= limits.max_boundary_pixels) return absl::OkStatus();
   return absl::ResourceExhaustedError(absl::StrFormat(
-      "readback: %d pixels at the borders of shadows, and this server takes at most "
+      "readback: %d pixels at the borders of shadows%s, and this server takes at most "
       "%d: is a shadow noise? Else send a smaller read-back, or fewer lights at a "
       "time",
       count,
+      readback.facing_bits.empty() ? "" : " and of surfaces that face a light",
       limits.max_boundary_pixels));
 }
 
@@ -291,19 +352,23 @@ absl::StatusOr<ReadbackView> ReadbackView::Of(const v1::Readback& proto,
   const absl::StatusOr<ReadbackHeader> header = ReadbackHeaderFromProto(proto, num_lights, limits);
   if (!header.ok()) return header.status();
   ReadbackView result(*header);
+  const BitsFields shadow = ShadowFields(proto), facing = FacingFields(proto),
+                   mapped = MappedFields(proto);
   const bool is_usable_as_is =
       header->depth_format == v1::DEPTH_FORMAT_FLOAT32 &&
-      header->shadow_format == v1::SHADOW_FORMAT_BITS && proto.shadow_planes().empty() &&
       static_cast<int64_t>(proto.depth().size()) == header->depth_bytes() &&
-      static_cast<int64_t>(proto.shadow_bits().size()) == header->shadow_bits_bytes() &&
-      IsAligned(proto.depth()) && IsAligned(proto.shadow_bits());
+      IsAligned(proto.depth()) && IsUsableAsIs(shadow, header->shadow) &&
+      IsUsableAsIs(facing, header->facing) && IsUsableAsIs(mapped, header->mapped);
   if (is_usable_as_is) {
-    result.view_ = {header->camera,
-                    WordsOf<float>(proto.depth()),
-                    header->depth_kind,
-                    WordsOf<uint32_t>(proto.shadow_bits())};
+    result.view_ = ReadbackOf(*header,
+                              WordsOf<float>(proto.depth()),
+                              WordsOf<uint32_t>(shadow.bits),
+                              WordsOf<uint32_t>(facing.bits),
+                              WordsOf<uint32_t>(mapped.bits));
   } else {
-    absl::Status status = result.buffer_.Append(proto);
+    // First, as a single byte of a plane takes words for all pixels.
+    absl::Status status = CheckWholeDepth(*header, proto.depth());
+    if (status.ok()) status = result.buffer_.Append(proto);
     if (status.ok()) status = result.buffer_.CheckComplete();
     if (!status.ok()) return status;
     result.view_ = result.buffer_.View();

@@ -2,7 +2,7 @@
 //
 // The pixels of a read-back that arrive piece by piece, or in a form that has to be converted.
 // In:   the header of a v1::Readback (camera and formats), then pieces of whole values.
-// Out:  a Readback of float depth and shadow bits, refused as soon as a piece does not belong.
+// Out:  a Readback of float depth and words of bits, refused as soon as a piece does not belong.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +11,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
+#include "calls/bit_buffer.h"
 #include "calls/call_context.h"
 #include "geometry/camera.h"
 #include "lightfit/v1/readback.pb.h"
@@ -23,13 +24,11 @@ struct ReadbackHeader {
   Camera camera;
   DepthKind depth_kind = DepthKind::kCameraZ;
   v1::DepthFormat depth_format = v1::DEPTH_FORMAT_FLOAT32;
-  v1::ShadowFormat shadow_format = v1::SHADOW_FORMAT_BITS;
-  int num_lights = 0;
+  BitsHeader shadow;
+  BitsHeader facing, mapped;  // may be absent
 
   int64_t num_pixels() const { return int64_t{camera.width} * camera.height; }
-  int64_t depth_bytes() const;         // as sent
-  int64_t shadow_bits_bytes() const;   // as sent, SHADOW_FORMAT_BITS
-  int64_t shadow_plane_bytes() const;  // as sent, each, SHADOW_FORMAT_PLANES
+  int64_t depth_bytes() const;  // as sent
 
   // What a PixelBuffer of it takes, bytes.
   int64_t buffer_bytes() const;
@@ -40,6 +39,9 @@ struct ReadbackHeader {
 absl::StatusOr<ReadbackHeader> ReadbackHeaderFromProto(const v1::Readback& proto,
                                                        int num_lights,
                                                        const CallLimits& limits);
+
+// Takes the pixels out of a message that a PixelBuffer has them of.
+void ClearPixels(v1::Readback* readback);
 
 class PixelBuffer {
  public:
@@ -57,22 +59,26 @@ class PixelBuffer {
   bool is_complete() const { return CheckComplete().ok(); }
 
   // Of a complete buffer; refers to it.
-  Readback View() const { return {header_.camera, depth_, header_.depth_kind, shadow_bits_}; }
+  Readback View() const;
 
  private:
   absl::Status AppendDepth(absl::string_view bytes);
-  absl::Status AppendShadowBits(absl::string_view bytes);
-  absl::Status AppendShadowPlane(int plane, absl::string_view bytes);
 
   ReadbackHeader header_;
   std::vector<float> depth_;
-  std::vector<uint32_t> shadow_bits_;
-  int64_t num_depth_bytes_ = 0;           // arrived so far
-  int64_t num_shadow_bits_bytes_ = 0;     // likewise
-  std::vector<int64_t> num_plane_bytes_;  // of each light
+  int64_t num_depth_bytes_ = 0;  // arrived so far
+  BitBuffer shadow_, facing_, mapped_;
 };
 
-// ResourceExhausted when shadows have more border than limits.max_boundary_pixels, as noise has.
+// The read-back of a header whose pixels are there already. Refers to them.
+Readback ReadbackOf(const ReadbackHeader& header,
+                    absl::Span<const float> depth,
+                    absl::Span<const uint32_t> shadow_bits,
+                    absl::Span<const uint32_t> facing_bits,
+                    absl::Span<const uint32_t> mapped_bits);
+
+// ResourceExhausted when shadows, or the surfaces that face the lights, have more border than
+// limits.max_boundary_pixels, as noise has.
 absl::Status CheckBoundary(const Readback& readback, const CallLimits& limits);
 
 // A read-back that came whole: refers to the message's own bytes where they can be used as they

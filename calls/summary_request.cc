@@ -59,7 +59,7 @@ absl::Status CheckField(const Message& asked,
 }
 
 absl::Status CheckHeld(const v1::FitOptions& asked, const v1::FitOptions& held) {
-  for (const char* name : {"metric", "cover", "along_edge_share"}) {
+  for (const char* name : {"metric", "cover", "border", "along_edge_share"}) {
     if (absl::Status status = CheckField(asked, held, "options.", name); !status.ok()) {
       return status;
     }

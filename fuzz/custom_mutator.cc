@@ -2,7 +2,6 @@
 // get beyond the first length or checksum. Linked into fuzzers alone.
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <random>
 #include <string>
 
@@ -40,6 +39,6 @@ extern "C" size_t LLVMFuzzerCustomMutator(uint8_t* data,
   }
   const std::string bytes = InputOfMessage(form, *message);
   if (bytes.empty() || bytes.size() > max_size) return LLVMFuzzerMutate(data, size, max_size);
-  std::memcpy(data, bytes.data(), bytes.size());
+  std::copy(bytes.begin(), bytes.end(), data);
   return bytes.size();
 }

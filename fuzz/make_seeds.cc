@@ -15,6 +15,7 @@
 #include "base/text_file.h"
 #include "calls/allocate_call.h"
 #include "calls/fit_call.h"
+#include "calls/pixel_buffer.h"
 #include "calls/track_session.h"
 #include "fuzz/exr_variants.h"
 #include "fuzz/inputs.pb.h"
@@ -60,8 +61,13 @@ SmallReadback SmallYard(const std::string& folder) {
       const int from = (kStep * y + kStep / 2) * whole.camera.width + kStep * x + kStep / 2;
       file.depth.push_back(whole.depth[from]);
       file.shadow_bits.push_back(whole.shadow_bits[from] & 3U);
+      // Made up, as the file has none.
+      file.facing_bits.push_back(file.shadow_bits.back() | (y % 2 == 0 ? 1U : 2U));
+      file.mapped_bits.push_back(x == 0 ? 1U : file.shadow_bits.back());
     }
   }
+  file.facing_lights = 3;
+  file.mapped_lights = 1;
   return yard;
 }
 
@@ -77,6 +83,9 @@ Request RequestOf(const SmallReadback& yard) {
   *readback.mutable_camera() = CameraToProto(yard.file.camera, yard.file.depth_kind);
   readback.set_depth(BytesOf(yard.file.depth));
   readback.set_shadow_bits(BytesOf(yard.file.shadow_bits));
+  readback.set_facing_bits(BytesOf(yard.file.facing_bits));
+  readback.set_mapped_bits(BytesOf(yard.file.mapped_bits));
+  readback.set_mapped_lights(yard.file.mapped_lights);
   for (const Light& light : yard.lights) *request.add_lights() = LightToProto(light);
   return request;
 }
@@ -98,12 +107,15 @@ void UseOtherForms(const SmallReadback& yard, v1::Readback* readback) {
   }
   readback->set_depth(BytesOf(halves));
   readback->clear_shadow_bits();
+  readback->clear_facing_bits();
+  const auto plane = [](const std::vector<uint32_t>& words, size_t light) {
+    std::string bytes;
+    for (const uint32_t word : words) bytes.push_back((word >> light & 1U) != 0 ? '\xff' : '\0');
+    return bytes;
+  };
   for (size_t l = 0; l < yard.lights.size(); ++l) {
-    std::string plane;
-    for (const uint32_t bits : yard.file.shadow_bits) {
-      plane.push_back((bits >> l & 1U) != 0 ? '\xff' : '\0');
-    }
-    readback->add_shadow_planes(plane);
+    readback->add_shadow_planes(plane(yard.file.shadow_bits, l));
+    readback->add_facing_planes(plane(yard.file.facing_bits, l));
   }
 }
 
@@ -118,13 +130,17 @@ v1::FitStreamRequest PixelsOf(const v1::Readback& readback, size_t begin, size_t
   v1::PixelChunk& pixels = *part.mutable_pixels();
   pixels.set_depth(readback.depth().substr(begin, end - begin));
   pixels.set_shadow_bits(readback.shadow_bits().substr(begin, end - begin));
+  pixels.set_facing_bits(readback.facing_bits().substr(begin, end - begin));
+  pixels.set_mapped_bits(readback.mapped_bits().substr(begin, end - begin));
   return part;
 }
 
+// Which follow in chunks.
 void RemovePixels(v1::Readback* readback) {
-  readback->clear_depth();
-  readback->clear_shadow_bits();
-  readback->clear_shadow_planes();
+  readback->set_facing_format(readback->facing_bits().empty() ? v1::SHADOW_FORMAT_PLANES
+                                                              : v1::SHADOW_FORMAT_BITS);
+  readback->set_mapped_format(v1::SHADOW_FORMAT_BITS);
+  ClearPixels(readback);
 }
 
 // An allocation makes dozens of fits.
@@ -311,10 +327,13 @@ class Seeds {
     stream.Clear();
     *stream.add_requests()->mutable_request() = other;
     stream.add_requests()->mutable_pixels()->set_depth(planes.depth());
+    stream.add_requests()->mutable_pixels()->set_mapped_bits(planes.mapped_bits());
     for (int l = 0; l < planes.shadow_planes_size(); ++l) {
       v1::PixelChunk& chunk = *stream.add_requests()->mutable_pixels();
       chunk.set_shadow_plane(planes.shadow_planes(l));
       chunk.set_shadow_plane_index(l);
+      chunk.set_facing_plane(planes.facing_planes(l));
+      chunk.set_facing_plane_index(l);
     }
     Save("fit_stream/planes", stream);
 

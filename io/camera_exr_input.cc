@@ -14,8 +14,8 @@ namespace {
 std::optional<Eigen::Matrix4d> MatrixOf(const internal::ExrInput& exr,
                                         int part,
                                         const std::string& name) {
-  const std::optional<Eigen::Matrix4d> matrix = exr.MatrixAttribute(part, name);
-  const std::optional<Eigen::Matrix4d> exact = exr.MatrixAttribute(part, internal::ExactName(name));
+  std::optional<Eigen::Matrix4d> matrix = exr.MatrixAttribute(part, name);
+  std::optional<Eigen::Matrix4d> exact = exr.MatrixAttribute(part, internal::ExactName(name));
   if (matrix && exact && exact->cast<float>() == matrix->cast<float>()) return exact;
   return matrix;
 }

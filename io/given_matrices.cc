@@ -91,7 +91,7 @@ absl::StatusOr<ClipConvention> ClipOf(const Value& value) {
   return clip;
 }
 
-absl::StatusOr<Eigen::Matrix4d> SingleMatrix(const Struct& object, MapSize map) {
+absl::StatusOr<Eigen::Matrix4d> SingleMapFromWorld(const Struct& object, MapSize map) {
   if (const Value* value = FindField(object, "map_from_world", "mapFromWorld")) {
     absl::StatusOr<Eigen::Matrix4d> matrix = MatrixOf(*value, "map_from_world");
     const Value* size = FindField(object, "map", "map");
@@ -116,22 +116,45 @@ absl::StatusOr<Eigen::Matrix4d> SingleMatrix(const Struct& object, MapSize map) 
       "\"clip_from_world\" with 16 numbers");
 }
 
-absl::StatusOr<std::map<std::string, Eigen::Matrix4d>> MatricesOfResult(absl::string_view json,
-                                                                        MapSize map) {
+// "dark", or as the schema calls it.
+absl::StatusOr<Border> SingleBorder(const Struct& object) {
+  const Value* value = FindField(object, "border", "border");
+  if (value == nullptr) return Border::kLit;
+  for (const Border border : {Border::kLit, Border::kDark}) {
+    const std::string& word = value->string_value();
+    if (word == BorderName(border) || word == v1::Border_Name(BorderToProto(border))) return border;
+  }
+  return absl::InvalidArgumentError(
+      absl::StrCat("border = \"", value->string_value(), "\", want \"lit\" or \"dark\""));
+}
+
+absl::StatusOr<GivenMatrix> SingleMatrix(const Struct& object, MapSize map) {
+  const absl::StatusOr<Eigen::Matrix4d> matrix = SingleMapFromWorld(object, map);
+  if (!matrix.ok()) return matrix.status();
+  const absl::StatusOr<Border> border = SingleBorder(object);
+  if (!border.ok()) return border.status();
+  return GivenMatrix{*matrix, *border};
+}
+
+absl::StatusOr<std::map<std::string, GivenMatrix>> MatricesOfResult(absl::string_view json,
+                                                                    MapSize map) {
   v1::FitResult result;
   if (absl::Status status = JsonToProto(json, result); !status.ok()) return status;
-  std::map<std::string, Eigen::Matrix4d> matrices;
+  std::map<std::string, GivenMatrix> matrices;
   for (const v1::LightResult& light : result.lights()) {
     if (light.status().code() != 0 || !light.has_map_from_world()) continue;
-    const std::string field = absl::StrCat("light \"", light.name(), "\": map_from_world");
-    const absl::StatusOr<Eigen::Matrix4d> matrix = MatrixFromProto(light.map_from_world(), field);
+    const std::string of_light = absl::StrCat("light \"", light.name(), "\": ");
+    const absl::StatusOr<Eigen::Matrix4d> matrix =
+        MatrixFromProto(light.map_from_world(), of_light + "map_from_world");
     if (!matrix.ok()) return matrix.status();
+    const absl::StatusOr<Border> border = BorderFromProto(light.border(), of_light + "border");
+    if (!border.ok()) return border.status();
     const MapSize own_map = {light.map().width(), light.map().height()};
     if (own_map.width < 1 || own_map.height < 1) {
       return absl::InvalidArgumentError(absl::StrFormat(
           "light \"%s\": map = %dx%d texels", light.name(), own_map.width, own_map.height));
     }
-    matrices[light.name()] = ScaledTexels(own_map, map) * *matrix;
+    matrices[light.name()] = {ScaledTexels(own_map, map) * *matrix, *border};
   }
   if (matrices.empty()) {
     return absl::InvalidArgumentError(
@@ -142,7 +165,7 @@ absl::StatusOr<std::map<std::string, Eigen::Matrix4d>> MatricesOfResult(absl::st
 
 }  // namespace
 
-absl::StatusOr<Eigen::Matrix4d> GivenMatrices::Of(const std::string& light) const {
+absl::StatusOr<GivenMatrix> GivenMatrices::Of(const std::string& light) const {
   if (for_every_light.has_value()) return *for_every_light;
   const auto found = by_light.find(light);
   if (found != by_light.end()) return found->second;
@@ -162,12 +185,12 @@ absl::StatusOr<GivenMatrices> ParseGivenMatrices(const std::string& name,
   GivenMatrices given;
   given.name = name;
   if (object.fields().contains("lights")) {
-    absl::StatusOr<std::map<std::string, Eigen::Matrix4d>> matrices = MatricesOfResult(json, map);
+    absl::StatusOr<std::map<std::string, GivenMatrix>> matrices = MatricesOfResult(json, map);
     if (!matrices.ok()) return matrices.status();
     given.by_light = *std::move(matrices);
     return given;
   }
-  const absl::StatusOr<Eigen::Matrix4d> matrix = SingleMatrix(object, map);
+  const absl::StatusOr<GivenMatrix> matrix = SingleMatrix(object, map);
   if (!matrix.ok()) return matrix.status();
   given.for_every_light = *matrix;
   return given;

@@ -4,7 +4,8 @@
 // In:   a result of `lightfit fit` (a matrix for each light by name), or one matrix:
 //         {"map_from_world": M, "map": {"width": 1024, "height": 1024}}   texels, or
 //         {"clip_from_world": M, "clip": "direct3d"}                      a renderer's
-//       with M as 16 numbers, as 4 rows of 4, or as {"m": [16 numbers]}; row-major, column vectors.
+//       with M as 16 numbers, as 4 rows of 4, or as {"m": [16 numbers]}; row-major, column vectors;
+//       and "border": "dark" where look-ups outside the map find shadow, else they find light.
 // Out:  GivenMatrices, in the texels of the map that they are to be compared in.
 #pragma once
 
@@ -15,18 +16,24 @@
 
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
+#include "geometry/border.h"
 #include "geometry/map_size.h"
 
 namespace lightfit {
 
+struct GivenMatrix {
+  Eigen::Matrix4d map_from_world;
+  Border border = Border::kLit;  // what look-ups outside the map find
+};
+
 struct GivenMatrices {
   std::string name;  // of the row
 
-  std::optional<Eigen::Matrix4d> for_every_light;
-  std::map<std::string, Eigen::Matrix4d> by_light;  // light name to matrix
+  std::optional<GivenMatrix> for_every_light;
+  std::map<std::string, GivenMatrix> by_light;  // light name to matrix
 
-  // map_from_world of a light. NotFound says which lights there are.
-  absl::StatusOr<Eigen::Matrix4d> Of(const std::string& light) const;
+  // NotFound says which lights there are.
+  absl::StatusOr<GivenMatrix> Of(const std::string& light) const;
 };
 
 // `map` is the size to compare in: matrices of maps of another size are scaled to it. Without "map"

@@ -21,7 +21,7 @@ namespace {
 // What Cycles writes where nothing was hit; beyond kBackgroundDepth, and finite.
 constexpr float kNothingHit = 1e10F;
 
-constexpr float kShadowThreshold = 0.5F;
+constexpr float kSetThreshold = 0.5F;
 
 float BackgroundDepth(DepthKind kind) {
   switch (kind) {
@@ -50,15 +50,36 @@ struct NameFormat {
   std::string prefix, suffix;
 };
 
-absl::StatusOr<NameFormat> ParseNameFormat(const std::string& format) {
+absl::StatusOr<NameFormat> ParseNameFormat(const char* kind, const std::string& format) {
   constexpr absl::string_view kPlaceholder = "{light}";
   const size_t place = format.find(kPlaceholder.data());
   if (place == std::string::npos || format.rfind(kPlaceholder.data()) != place) {
-    return absl::InvalidArgumentError(absl::StrFormat(
-        "shadow_channel_format = \"%s\", want {light} in it once, as in \"shadow.{light}\"",
-        format));
+    return absl::InvalidArgumentError(
+        absl::StrFormat("%s_channel_format = \"%s\", want {light} in it once, as in \"%s.{light}\"",
+                        kind,
+                        format,
+                        kind));
   }
   return NameFormat{format.substr(0, place), format.substr(place + kPlaceholder.size())};
+}
+
+// How the channels of lights are named.
+struct NameFormats {
+  NameFormat shadow, facing, mapped;
+};
+
+absl::StatusOr<NameFormats> ParseNameFormats(const ReadbackExrOptions& options) {
+  absl::StatusOr<NameFormat> shadow = ParseNameFormat("shadow", options.shadow_channel_format);
+  if (!shadow.ok()) return shadow.status();
+  absl::StatusOr<NameFormat> facing = ParseNameFormat("facing", options.facing_channel_format);
+  if (!facing.ok()) return facing.status();
+  absl::StatusOr<NameFormat> mapped = ParseNameFormat("mapped", options.mapped_channel_format);
+  if (!mapped.ok()) return mapped.status();
+  return NameFormats{*std::move(shadow), *std::move(facing), *std::move(mapped)};
+}
+
+std::string ChannelOf(const Light& light, const NameFormat& format) {
+  return absl::StrCat(format.prefix, light.name, format.suffix);
 }
 
 std::vector<std::string> LightsInFile(const ExrInput& exr, const NameFormat& format) {
@@ -142,24 +163,34 @@ absl::Status CheckShadowBits(absl::Span<const Light> lights) {
   return absl::OkStatus();
 }
 
-// Sets the light's bit where its channel says shadow. NaN is no shadow.
-absl::Status AddShadow(ExrInput& exr,
-                       ChannelId id,
-                       int shadow_bit,
-                       std::vector<uint32_t>& shadow_bits) {
+// Sets the light's bit where its channel says so. NaN does not.
+absl::Status AddBit(ExrInput& exr, ChannelId id, int shadow_bit, std::vector<uint32_t>& words) {
   const uint32_t bit = 1U << shadow_bit;
   if (exr.is_uint(id)) {
     const absl::StatusOr<std::vector<uint32_t>> values = exr.ReadUint(id);
     if (!values.ok()) return values.status();
-    for (size_t i = 0; i < values->size(); ++i) shadow_bits[i] |= (*values)[i] != 0 ? bit : 0;
+    for (size_t i = 0; i < values->size(); ++i) words[i] |= (*values)[i] != 0 ? bit : 0;
     return absl::OkStatus();
   }
   const absl::StatusOr<std::vector<float>> values = exr.ReadFloat(id, 0.0F);
   if (!values.ok()) return values.status();
   for (size_t i = 0; i < values->size(); ++i) {
-    shadow_bits[i] |= (*values)[i] > kShadowThreshold ? bit : 0;
+    words[i] |= (*values)[i] > kSetThreshold ? bit : 0;
   }
   return absl::OkStatus();
+}
+
+// The same for a channel of the read-back's size; what is wrong names the light.
+absl::Status AddBitOfLight(ExrInput& exr,
+                           ChannelId depth,
+                           ChannelId id,
+                           const Light& light,
+                           std::vector<uint32_t>& words) {
+  absl::Status status = CheckSameSize(exr, depth, id);
+  if (status.ok()) status = AddBit(exr, id, light.shadow_bit, words);
+  if (status.ok()) return status;
+  return absl::Status(status.code(),
+                      absl::StrFormat("light \"%s\": %s", light.name, status.message()));
 }
 
 absl::Status ReadShadowMask(ExrInput& exr,
@@ -188,9 +219,8 @@ absl::Status ReadShadowOfLight(ExrInput& exr,
                                const ReadbackExrOptions& options,
                                std::vector<uint32_t>& shadow_bits) {
   const auto named = options.shadow_channels.find(light.name);
-  const std::string channel = named != options.shadow_channels.end()
-                                  ? named->second
-                                  : absl::StrCat(format.prefix, light.name, format.suffix);
+  const std::string channel =
+      named != options.shadow_channels.end() ? named->second : ChannelOf(light, format);
   const std::optional<ChannelId> id = exr.Find(channel, depth.part);
   if (!id) {
     return absl::NotFoundError(
@@ -202,11 +232,22 @@ absl::Status ReadShadowOfLight(ExrInput& exr,
                         QuotedList(LightsInFile(exr, format)),
                         QuotedList(AllChannels(exr))));
   }
-  absl::Status status = CheckSameSize(exr, depth, *id);
-  if (status.ok()) status = AddShadow(exr, *id, light.shadow_bit, shadow_bits);
-  if (status.ok()) return status;
-  return absl::Status(status.code(),
-                      absl::StrFormat("light \"%s\": %s", light.name, status.message()));
+  return AddBitOfLight(exr, depth, *id, light, shadow_bits);
+}
+
+// Where the file has that channel of the light; else nothing happens.
+absl::Status ReadOptionalOfLight(ExrInput& exr,
+                                 ChannelId depth,
+                                 const Light& light,
+                                 const NameFormat& format,
+                                 std::vector<uint32_t>& words,
+                                 uint32_t& lights) {
+  const std::optional<ChannelId> id = exr.Find(ChannelOf(light, format), depth.part);
+  if (!id) return absl::OkStatus();
+  words.resize(size_t{1} * exr.width(depth.part) * exr.height(depth.part), 0);
+  absl::Status status = AddBitOfLight(exr, depth, *id, light, words);
+  if (status.ok()) lights |= 1U << light.shadow_bit;
+  return status;
 }
 
 absl::StatusOr<Camera> CameraFor(const ExrInput& exr,
@@ -235,6 +276,10 @@ Readback ReadbackFile::View() const {
   readback.depth = depth;
   readback.depth_kind = depth_kind;
   readback.shadow_bits = shadow_bits;
+  readback.facing_bits = facing_bits;
+  readback.facing_lights = facing_lights;
+  readback.mapped_bits = mapped_bits;
+  readback.mapped_lights = mapped_lights;
   return readback;
 }
 
@@ -242,8 +287,8 @@ absl::StatusOr<ReadbackFile> ReadReadbackExr(const std::string& path,
                                              absl::Span<const Light> lights,
                                              const ReadbackExrOptions& options) {
   if (absl::Status status = CheckShadowBits(lights); !status.ok()) return status;
-  const absl::StatusOr<NameFormat> format = ParseNameFormat(options.shadow_channel_format);
-  if (!format.ok()) return format.status();
+  const absl::StatusOr<NameFormats> formats = ParseNameFormats(options);
+  if (!formats.ok()) return formats.status();
   absl::StatusOr<ExrInput> exr = ExrInput::Open(path, options.max_pixels);
   if (!exr.ok()) return exr.status();
   const absl::StatusOr<ChannelId> depth_id = FindDepth(*exr, options.depth_channel);
@@ -269,18 +314,33 @@ absl::StatusOr<ReadbackFile> ReadReadbackExr(const std::string& path,
     absl::Status status =
         ReadShadowMask(*exr, *depth_id, options.shadow_bits_channel, file.shadow_bits);
     if (!status.ok()) return status;
-    return file;
   }
   for (size_t l = 0; l < lights.size(); ++l) {
-    file.light_status[l] =
-        ReadShadowOfLight(*exr, *depth_id, lights[l], *format, options, file.shadow_bits);
+    const Light& light = lights[l];
+    absl::Status status;
+    if (options.shadow_bits_channel.empty()) {
+      status =
+          ReadShadowOfLight(*exr, *depth_id, light, formats->shadow, options, file.shadow_bits);
+    }
+    if (status.ok()) {
+      status = ReadOptionalOfLight(
+          *exr, *depth_id, light, formats->facing, file.facing_bits, file.facing_lights);
+    }
+    if (status.ok()) {
+      status = ReadOptionalOfLight(
+          *exr, *depth_id, light, formats->mapped, file.mapped_bits, file.mapped_lights);
+    }
+    file.light_status[l] = status;
   }
+  if (file.facing_lights == 0) file.facing_bits.clear();
+  if (file.mapped_lights == 0) file.mapped_bits.clear();
   return file;
 }
 
 absl::StatusOr<std::vector<std::string>> ListShadowLights(const std::string& path,
                                                           const ReadbackExrOptions& options) {
-  const absl::StatusOr<NameFormat> format = ParseNameFormat(options.shadow_channel_format);
+  const absl::StatusOr<NameFormat> format =
+      ParseNameFormat("shadow", options.shadow_channel_format);
   if (!format.ok()) return format.status();
   const absl::StatusOr<ExrInput> exr = ExrInput::Open(path, options.max_pixels);
   if (!exr.ok()) return exr.status();

@@ -2,12 +2,13 @@
 //
 // Read-backs from OpenEXR files, as renderers write them.
 // In:   an EXR file with a depth channel and shadow channels, the lights, and what the file means.
-// Out:  ReadbackFile: depth, shadow bits and camera, owned; one status per light.
+// Out:  ReadbackFile: depth, bits and camera, owned; one status per light.
 //
 // Depth is the channel "Z" or "<layer>.Z". Shadows are one channel per light, "shadow.<light>",
-// above 0.5 where that light is blocked, or one UINT channel of bits. In a multi-part file the
-// first part with a depth channel is the read-back; shadow channels may lie in any part of its
-// size.
+// above 0.5 where that light is blocked, or one UINT channel of bits. Optional, per light as well:
+// "facing.<light>", above 0.5 where the surface faces the light, and "mapped.<light>", where the
+// map that is drawn with says shadow. In a multi-part file the first part with a depth channel is
+// the read-back; the others may lie in any part of its size.
 #pragma once
 
 #include <cstdint>
@@ -41,6 +42,10 @@ struct ReadbackExrOptions {
   // Not empty: all shadows are in this one UINT channel, light l in bit Light::shadow_bit.
   std::string shadow_bits_channel;
 
+  // The same for the optional channels: Readback::facing_bits and mapped_bits.
+  std::string facing_channel_format = "facing.{light}";
+  std::string mapped_channel_format = "mapped.{light}";
+
   // Set: this camera; its size must be the display window's. Else: the file's attributes, which
   // `camera_exr` says how to read.
   std::optional<Camera> camera;
@@ -56,8 +61,12 @@ struct ReadbackFile {
   std::vector<float> depth;           // row-major, top row first, the display window
   std::vector<uint32_t> shadow_bits;  // likewise; light l in bit lights[l].shadow_bit
 
-  // Element l belongs to lights[l]: ok, or why its shadow could not be read (NotFound lists the
-  // channels there are). The other lights are good to use.
+  // Likewise; empty where no light has such a channel. `..._lights` has the bits of those that do.
+  std::vector<uint32_t> facing_bits, mapped_bits;
+  uint32_t facing_lights = 0, mapped_lights = 0;
+
+  // Element l belongs to lights[l]: ok, or why its channels could not be read (NotFound lists those
+  // there are, when it is the shadow that is missing). The other lights are good to use.
   std::vector<absl::Status> light_status;
 
   // Refers to this object's buffers.
@@ -65,8 +74,9 @@ struct ReadbackFile {
 };
 
 // Reads one file. Fails as a whole when the file, its depth or its camera cannot be used; a light
-// without a shadow channel fails alone, in light_status. Outside the data window there is
-// background and no shadow; what lies outside the display window is dropped. Each light needs its
+// without a shadow channel, or with an optional one that cannot be read, fails alone, in
+// light_status. Outside the data window there is background, no shadow and nothing that faces a
+// light; what lies outside the display window is dropped. Each light needs its
 // own shadow_bit; ReadLightsFile() numbers them in order.
 absl::StatusOr<ReadbackFile> ReadReadbackExr(const std::string& path,
                                              absl::Span<const Light> lights,

@@ -98,44 +98,63 @@ void AddMatrix(const std::string& name, const Eigen::Matrix4d& matrix, Imf::Head
   header->insert(internal::ExactName(name), Imf::M44dAttribute(rows));
 }
 
-std::string ShadowChannel(const Light& light) { return absl::StrCat("shadow.", light.name); }
+// A channel of one light.
+struct BitChannel {
+  std::string name;
+  absl::Span<const uint32_t> words;
+  int bit;
+};
 
-Imf::Header HeaderOf(const Readback& readback, absl::Span<const Light> lights) {
+std::vector<BitChannel> BitChannelsOf(const Readback& readback, absl::Span<const Light> lights) {
+  std::vector<BitChannel> channels;
+  const auto add = [&](const char* kind, absl::Span<const uint32_t> words, const Light& light) {
+    channels.push_back({absl::StrCat(kind, ".", light.name), words, light.shadow_bit});
+  };
+  for (const Light& light : lights) {
+    add("shadow", readback.shadow_bits, light);
+    if (readback.KnowsFacing(light.shadow_bit)) add("facing", readback.facing_bits, light);
+    if (readback.KnowsMapped(light.shadow_bit)) add("mapped", readback.mapped_bits, light);
+  }
+  return channels;
+}
+
+Imf::Header HeaderOf(const Readback& readback, const std::vector<BitChannel>& channels) {
   const StandardMatrices matrices = StandardMatricesOf(readback.camera);
   Imf::Header header(
       readback.width(), readback.height(), static_cast<float>(matrices.pixel_aspect));
   header.compression() = Imf::ZIP_COMPRESSION;
   header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
-  for (const Light& light : lights) {
-    header.channels().insert(ShadowChannel(light), Imf::Channel(Imf::HALF));
+  for (const BitChannel& channel : channels) {
+    header.channels().insert(channel.name, Imf::Channel(Imf::HALF));
   }
   AddMatrix("worldToCamera", matrices.camera_from_world, &header);
   AddMatrix("worldToNDC", matrices.ndc_from_world, &header);
   return header;
 }
 
-std::vector<half> ShadowOf(const Readback& readback, const Light& light) {
-  std::vector<half> shadow;
-  shadow.reserve(readback.shadow_bits.size());
-  for (const uint32_t bits : readback.shadow_bits) {
-    shadow.emplace_back((bits >> light.shadow_bit & 1U) != 0 ? 1.0F : 0.0F);
+std::vector<half> ValuesOf(const BitChannel& channel) {
+  std::vector<half> values;
+  values.reserve(channel.words.size());
+  for (const uint32_t word : channel.words) {
+    values.emplace_back((word >> channel.bit & 1U) != 0 ? 1.0F : 0.0F);
   }
-  return shadow;
+  return values;
 }
 
 // The whole file: to memory first, as OpenEXR ends a file in a destructor, where a full disk would
 // go unnoticed.
 std::string BytesOf(const Readback& readback, absl::Span<const Light> lights) {
-  const Imf::Header header = HeaderOf(readback, lights);
+  const std::vector<BitChannel> channels = BitChannelsOf(readback, lights);
+  const Imf::Header header = HeaderOf(readback, channels);
   const auto slice = [&header](Imf::PixelType type, const void* pixels) {
     return Imf::Slice::Make(type, pixels, header.dataWindow());
   };
-  std::vector<std::vector<half>> shadows;
+  std::vector<std::vector<half>> values;
   Imf::FrameBuffer pixels;
   pixels.insert("Z", slice(Imf::FLOAT, readback.depth.data()));
-  for (const Light& light : lights) {
-    shadows.push_back(ShadowOf(readback, light));
-    pixels.insert(ShadowChannel(light), slice(Imf::HALF, shadows.back().data()));
+  for (const BitChannel& channel : channels) {
+    values.push_back(ValuesOf(channel));
+    pixels.insert(channel.name, slice(Imf::HALF, values.back().data()));
   }
   internal::StartExrThreads();
   Imf::StdOSStream bytes;

@@ -2,7 +2,9 @@
 //
 // Read-backs as OpenEXR files, such as ReadReadbackExr() reads with its default options.
 // In:   a Readback with depth of kind kCameraZ, the lights of its shadow bits.
-// Out:  one file: depth as "Z" (float), per light "shadow.NAME" (half, 1 where blocked, else 0).
+// Out:  one file: depth as "Z" (float), per light "shadow.NAME" (half, 1 where blocked, else 0),
+// and
+//       likewise "facing.NAME" and "mapped.NAME" where the read-back knows them.
 //
 // The camera goes into worldToCamera and worldToNDC, as the OpenEXR standard has them. These are
 // single precision, which moves a camera 400 metres from the origin by 0.03 mm, so it stands there

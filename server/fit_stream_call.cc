@@ -64,10 +64,7 @@ absl::Status FitStreamCall::Begin(v1::FitRequest* request) {
   pixels_.emplace(*header);
   request_.Swap(request);
   absl::Status status = pixels_->Append(request_.readback());
-  // They are in the buffer now.
-  request_.mutable_readback()->clear_depth();
-  request_.mutable_readback()->clear_shadow_bits();
-  request_.mutable_readback()->clear_shadow_planes();
+  ClearPixels(request_.mutable_readback());
   return status;
 }
 
@@ -87,11 +84,10 @@ void FitStreamCall::Compute() {
   const Readback readback = pixels_->View();
   const absl::Status fits = CheckBoundary(readback, context.limits);
   absl::StatusOr<v1::FitResult> result = fits.ok() ? AnswerFit(request_, readback, context) : fits;
-  if (result.ok()) {
-    call_.NoteLights(result->lights());
-    *result_ = *std::move(result);
-  }
-  End(result.status());
+  if (!result.ok()) return End(result.status());
+  call_.NoteLights(result->lights());
+  *result_ = *std::move(result);
+  End(absl::OkStatus());
 }
 
 void FitStreamCall::End(const absl::Status& status) {

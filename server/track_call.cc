@@ -65,8 +65,9 @@ absl::Status TrackCall::Take(v1::TrackRequest* request) {
       return absl::InvalidArgumentError("setup: is here already, want it once");
     }
     absl::StatusOr<TrackSession> session = TrackSession::Begin(request->setup());
-    if (session.ok()) session_.emplace(*std::move(session));
-    return session.status();
+    if (!session.ok()) return session.status();
+    session_.emplace(*std::move(session));
+    return absl::OkStatus();
   }
   if (!session_.has_value()) {
     return absl::InvalidArgumentError("first message is not setup, want setup, then frames");
@@ -98,10 +99,7 @@ absl::Status TrackCall::BeginFrame(v1::TrackFrame* frame) {
     pixels_.emplace(*header);
     frame_status_ = pixels_->Append(frame_.readback());
   }
-  v1::Readback& readback = *frame_.mutable_readback();
-  readback.clear_depth();
-  readback.clear_shadow_bits();
-  readback.clear_shadow_planes();
+  ClearPixels(frame_.mutable_readback());
   skips_chunks_ = !frame_status_.ok();
   is_frame_ready_ = skips_chunks_ || pixels_->is_complete();
   if (!is_frame_ready_) {

@@ -3,13 +3,20 @@
 namespace lightfit {
 namespace {
 
-// Pixels that cannot be used where they are in the message are converted: 8 bytes each.
+// Pixels that cannot be used where they are in the message are converted: 4 bytes for the depth,
+// and 4 for each kind of bits.
 RequestSize SizeWithReadback(int64_t message_bytes, const v1::Readback& readback) {
-  constexpr int64_t kConvertedPixelBytes = 8;
+  constexpr int64_t kConvertedValueBytes = 4;
   const bool is_half = readback.depth_format() == v1::DEPTH_FORMAT_FLOAT16;
   const int64_t pixels = static_cast<int64_t>(readback.depth().size()) / (is_half ? 2 : 4);
-  const bool is_converted = is_half || readback.shadow_planes_size() > 0;
-  return {pixels, message_bytes + (is_converted ? kConvertedPixelBytes * pixels : 0)};
+  const bool has_facing_planes = readback.facing_planes_size() > 0;
+  const bool has_mapped_planes = readback.mapped_planes_size() > 0;
+  if (!is_half && readback.shadow_planes_size() == 0 && !has_facing_planes && !has_mapped_planes) {
+    return {pixels, message_bytes};
+  }
+  const int num_values = 2 + (has_facing_planes || !readback.facing_bits().empty() ? 1 : 0) +
+                         (has_mapped_planes || !readback.mapped_bits().empty() ? 1 : 0);
+  return {pixels, message_bytes + num_values * kConvertedValueBytes * pixels};
 }
 
 int64_t BytesOf(const google::protobuf::Message& message) {

@@ -64,6 +64,10 @@ absl::StatusOr<ClipConvention> ClipConventionFromProto(const v1::ClipConvention&
   }
 }
 
+v1::Border BorderToProto(Border border) {
+  return border == Border::kDark ? v1::BORDER_DARK : v1::BORDER_LIT;
+}
+
 v1::ClipConvention ClipConventionToProto(const ClipConvention& clip) {
   v1::ClipConvention proto;
   switch (clip.depth) {
@@ -95,6 +99,19 @@ absl::StatusOr<ClipConvention> ParseClipConvention(absl::string_view name) {
   }
   return absl::InvalidArgumentError(absl::StrFormat(
       "clip convention: \"%s\" is not known, want vulkan, direct3d, opengl or reversed_z", name));
+}
+
+absl::StatusOr<Border> BorderFromProto(v1::Border proto, absl::string_view field) {
+  switch (proto) {
+    case v1::BORDER_UNSPECIFIED:
+    case v1::BORDER_LIT:
+      return Border::kLit;
+    case v1::BORDER_DARK:
+      return Border::kDark;
+    default:
+      return absl::InvalidArgumentError(
+          absl::StrFormat("%s = %d, want BORDER_LIT or BORDER_DARK", field, proto));
+  }
 }
 
 }  // namespace lightfit

@@ -1,12 +1,13 @@
 // wire/matrix_proto.h
 //
-// Matrices and clip conventions from and to lightfit.v1.
+// Matrices, clip conventions and borders from and to lightfit.v1.
 #pragma once
 
 #include <Eigen/Core>
 
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
+#include "geometry/border.h"
 #include "geometry/clip.h"
 #include "lightfit/v1/matrix.pb.h"
 
@@ -25,5 +26,9 @@ v1::ClipConvention ClipConventionToProto(const ClipConvention& clip);
 // "vulkan", "direct3d", "opengl", "reversed_z", and back; "" for other combinations.
 const char* ClipConventionName(const ClipConvention& clip);
 absl::StatusOr<ClipConvention> ParseClipConvention(absl::string_view name);
+
+// Unspecified is lit.
+absl::StatusOr<Border> BorderFromProto(v1::Border proto, absl::string_view field);
+v1::Border BorderToProto(Border border);
 
 }  // namespace lightfit

@@ -22,6 +22,11 @@ constexpr std::pair<Metric, v1::Metric> kMetrics[] = {
 constexpr std::pair<Cover, v1::Cover> kCovers[] = {{Cover::kReceivers, v1::COVER_RECEIVERS},
                                                    {Cover::kShadowed, v1::COVER_SHADOWED}};
 
+constexpr std::pair<BorderChoice, v1::BorderChoice> kBorders[] = {
+    {BorderChoice::kLit, v1::BORDER_CHOICE_LIT},
+    {BorderChoice::kDark, v1::BORDER_CHOICE_DARK},
+    {BorderChoice::kAutomatic, v1::BORDER_CHOICE_AUTOMATIC}};
+
 constexpr std::pair<Search, v1::Search> kSearches[] = {
     {Search::kFocused, v1::SEARCH_FOCUSED},
     {Search::kRotationLineSearch, v1::SEARCH_ROTATION_LINE_SEARCH},
@@ -99,6 +104,7 @@ v1::FitOptions FitOptionsToProto(const FitOptions& options) {
   samples.set_use_terminators(options.samples.use_terminators);
   proto.set_metric(ToProto(kMetrics, options.metric));
   proto.set_cover(ToProto(kCovers, options.cover));
+  proto.set_border(ToProto(kBorders, options.border));
   proto.set_search(ToProto(kSearches, options.search));
   proto.set_affine(ToProto(kAffines, options.affine));
   proto.set_ray_space(ToProto(kRaySpaces, options.ray_space));
@@ -112,6 +118,7 @@ v1::FitOptions FitOptionsToProto(const FitOptions& options) {
   proto.set_grid_directions(options.grid_directions);
   proto.set_sample_by_sample(options.sample_by_sample);
   proto.set_compute_statistics(options.compute_statistics);
+  proto.set_use_fine_cover(options.use_fine_cover);
   return proto;
 }
 
@@ -121,6 +128,7 @@ absl::StatusOr<FitOptions> FitOptionsFromProto(const v1::FitOptions& proto) {
   for (const absl::Status& status :
        {FromProto(kMetrics, "metric", proto.metric(), &options.metric),
         FromProto(kCovers, "cover", proto.cover(), &options.cover),
+        FromProto(kBorders, "border", proto.border(), &options.border),
         FromProto(kSearches, "search", proto.search(), &options.search),
         FromProto(kAffines, "affine", proto.affine(), &options.affine),
         FromProto(kRaySpaces, "ray_space", proto.ray_space(), &options.ray_space),
@@ -136,6 +144,7 @@ absl::StatusOr<FitOptions> FitOptionsFromProto(const v1::FitOptions& proto) {
   if (proto.has_grid_directions()) options.grid_directions = proto.grid_directions();
   if (proto.has_sample_by_sample()) options.sample_by_sample = proto.sample_by_sample();
   if (proto.has_compute_statistics()) options.compute_statistics = proto.compute_statistics();
+  if (proto.has_use_fine_cover()) options.use_fine_cover = proto.use_fine_cover();
   if (absl::Status status = ValidateFitOptions(options); !status.ok()) return status;
   return options;
 }

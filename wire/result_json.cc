@@ -23,6 +23,8 @@ v1::StopReason StopReasonToProto(StopReason reason) {
       return v1::STOP_REASON_ROUND_LIMIT;
     case StopReason::kAxisAtLimit:
       return v1::STOP_REASON_AXIS_AT_LIMIT;
+    case StopReason::kTooFewSamples:
+      return v1::STOP_REASON_TOO_FEW_SAMPLES;
   }
   return v1::STOP_REASON_UNSPECIFIED;
 }
@@ -75,6 +77,8 @@ v1::LightResult LightResultToProto(const LightFit& fit, const FitReport& report)
       ClipFromMap(matrix.map, report.clip) * matrix.map_from_world;
   *proto.mutable_clip_from_world() = MatrixToProto(clip_from_world);
   *proto.mutable_clip() = ClipConventionToProto(report.clip);
+  proto.set_border(BorderToProto(matrix.border));
+  proto.set_facing(FacingSourceToProto(matrix.facing));
   *proto.mutable_energies() = EnergiesToProto(matrix, fit);
   if (fit.wrong_share) *proto.mutable_foretold_wrong() = ForetoldToProto(fit);
   proto.set_solver_report(matrix.search.solver_report);
@@ -93,6 +97,16 @@ v1::LightResult LightResultToProto(const LightFit& fit, const FitReport& report)
 }
 
 }  // namespace
+
+v1::FacingSource FacingSourceToProto(FacingSource source) {
+  switch (source) {
+    case FacingSource::kGuessed:
+      return v1::FACING_SOURCE_GUESSED;
+    case FacingSource::kGiven:
+      return v1::FACING_SOURCE_GIVEN;
+  }
+  return v1::FACING_SOURCE_UNSPECIFIED;
+}
 
 v1::FootprintStatistics FootprintToProto(const FootprintStatistics& footprint,
                                          bool with_quantiles) {
@@ -116,6 +130,7 @@ v1::SampleCounts SampleCountsToProto(const SampleCounts& counts) {
   proto.set_facing_away(counts.facing_away);
   proto.set_edge_on(counts.edge_on);
   proto.set_used(counts.used);
+  proto.set_beyond_map(counts.beyond_map);
   return proto;
 }
 

@@ -47,6 +47,7 @@ v1::FitResult FitResultToProto(const FitReport& report);
 
 // Parts of it. Median, p99 and worst footprint only `with_quantiles`.
 v1::FootprintStatistics FootprintToProto(const FootprintStatistics& footprint, bool with_quantiles);
+v1::FacingSource FacingSourceToProto(FacingSource source);
 v1::SampleCounts SampleCountsToProto(const SampleCounts& counts);
 
 // JSON with named fields in schema order and numbers that read back exactly. NaN and infinity are

@@ -68,6 +68,7 @@ v1::TrackedState TrackedStateToProto(const TrackedState& state) {
   *proto.mutable_map_from_world() = MatrixToProto(state.map_from_world);
   proto.set_frames_kept(state.frames_kept);
   proto.set_frames_since_update(state.frames_since_update);
+  proto.set_border(BorderToProto(state.border));
   return proto;
 }
 
@@ -81,8 +82,10 @@ absl::StatusOr<std::vector<TrackedState>> TrackedStatesFromProto(const v1::ShotI
       const absl::StatusOr<Eigen::Matrix4d> map_from_world =
           MatrixFromProto(proto.map_from_world(), "trackerState.mapFromWorld");
       if (!map_from_world.ok()) return map_from_world.status();
+      const absl::StatusOr<Border> border = BorderFromProto(proto.border(), "trackerState.border");
+      if (!border.ok()) return border.status();
       states.push_back(
-          {light, map, *map_from_world, proto.frames_kept(), proto.frames_since_update()});
+          {light, map, *border, *map_from_world, proto.frames_kept(), proto.frames_since_update()});
     }
   }
   return states;

@@ -85,7 +85,8 @@ absl::Status ReadCounts(const v1::SampleCounts& proto, SampleCounts* counts) {
              proto.discontinuity(),
              proto.facing_away(),
              proto.edge_on(),
-             proto.used()};
+             proto.used(),
+             proto.beyond_map()};
   for (const int64_t count : {counts->receivers,
                               counts->invalid_depth,
                               counts->candidates,
@@ -93,7 +94,8 @@ absl::Status ReadCounts(const v1::SampleCounts& proto, SampleCounts* counts) {
                               counts->discontinuity,
                               counts->facing_away,
                               counts->edge_on,
-                              counts->used}) {
+                              counts->used,
+                              counts->beyond_map}) {
     if (absl::Status status = CheckCount("counts", count, 0); !status.ok()) return status;
   }
   if (counts->used > counts->candidates) {
@@ -171,6 +173,7 @@ v1::SummaryTotal TotalToProto(const SummaryTotal& total) {
   *proto.mutable_total_weight() = ExactSumToProto(total.total_weight);
   *proto.mutable_footprint_sum() = ExactSumToProto(total.footprint_sum);
   *proto.mutable_counts() = SampleCountsToProto(total.counts);
+  proto.set_facing(FacingSourceToProto(total.facing));
   if (total.surrounded || !total.hull.empty()) *proto.mutable_cover() = CoverToProto(total);
   return proto;
 }
@@ -206,6 +209,8 @@ absl::Status ReadTotal(const v1::SummaryTotal& proto, bool is_l1, SummaryTotal* 
     return Refuse("tensor", "is there without samples");
   }
   total->num_frames = proto.num_frames();
+  total->facing =
+      proto.facing() == v1::FACING_SOURCE_GIVEN ? FacingSource::kGiven : FacingSource::kGuessed;
   return absl::OkStatus();
 }
 
@@ -248,6 +253,7 @@ absl::StatusOr<LightSummary> LightSummaryFromProto(const v1::LightSummary& proto
   LightSummary summary;
   summary.total.light = *std::move(light);
   summary.total.metric = WeightsOf(options.metric, options.along_edge_share);
+  summary.total.border = options.border == BorderChoice::kDark ? Border::kDark : Border::kLit;
   const bool is_l1 = IsL1(options.metric);
   absl::Status status =
       proto.has_total() ? ReadTotal(proto.total(), is_l1, &summary.total) : absl::OkStatus();
@@ -314,7 +320,11 @@ absl::StatusOr<SummarySet> SummarySetFromProto(const v1::SummaryFile& proto) {
   }
   absl::StatusOr<FitOptions> options = FitOptionsFromProto(proto.options());
   if (!options.ok()) return options.status();
-  if (FitOptionsToProto(*options).SerializeAsString() != proto.options().SerializeAsString()) {
+  v1::FitOptions given = proto.options();
+  if (given.border() == v1::BORDER_CHOICE_UNSPECIFIED) {
+    given.set_border(v1::BORDER_CHOICE_LIT);  // files from before there was a choice
+  }
+  if (FitOptionsToProto(*options).SerializeAsString() != given.SerializeAsString()) {
     return absl::InvalidArgumentError("options: some are not set, want all");
   }
   if (proto.lights().empty()) return absl::InvalidArgumentError("lights: none, want at least one");

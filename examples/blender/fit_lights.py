@@ -60,6 +60,7 @@ def main() -> None:
                 readback.lights,
                 flags.map,
                 clip=flags.clip.replace("-", "_"),
+                facing=readback.facing,
                 source=f"{bpy.data.filepath or 'untitled'}, scene {scene.name}, frame {frame}",
             )
         except lightfit.LightfitError as error:
@@ -231,7 +232,7 @@ def keep_readback(readback: Readback, folder: str, frame: int) -> None:
     with open(f"{path}.json", "w", encoding="utf-8") as file:
         json.dump(readback.scene_file(), file, indent=1)
     print(f"fit_lights: kept {path}.exr; lightfit fit {path}.exr --lights {path}.json --camera "
-          f"{path}.json fits it again")
+          f"{path}.json --border lit fits it again")
 
 
 def write_properties(light: bpy.types.Object, fitted: Any) -> None:

@@ -1,8 +1,10 @@
-"""The read-back of a scene: depth and one shadow bit per light, rendered with Cycles.
+"""The read-back of a scene: depth, and per light a shadow bit and one that says which surfaces face
+it, rendered with Cycles.
 
 A light's shadow is the quotient of two renders that differ in nothing but whether lights cast
 shadows; a light group of its own keeps it apart from the other lights. All samples of a pixel lie
-at its centre, where Cycles takes depth, too; so the quotient is 0 or 1, and fits the depth.
+at its centre, where Cycles takes depth, too; so the quotient is 0 or 1, and fits the depth. The
+render without shadows is dark where a surface is turned away.
 
 Everything happens in a copy of the scene, with lights of its own in the places of the scene's. The
 copy goes when it is done, whatever happens; meanwhile the scene's lights are hidden and its camera
@@ -33,6 +35,7 @@ class SceneError(Exception):
 class Readback:
     depth: numpy.ndarray  # (h, w) float32, planar distance, scene units; 1e10 where nothing was hit
     shadow: numpy.ndarray  # (h, w) uint32, light l in bit l; 0 where a surface faces away from it
+    facing: numpy.ndarray  # likewise, 1 where it faces the light
     lights: List[Dict[str, Any]]  # {"name", "position"} or {"name", "direction"}
     camera_to_world: numpy.ndarray  # (4, 4), of the camera; it looks along -z
     projection: numpy.ndarray  # (4, 4), as OpenGL's: y up, depth -1 ... 1
@@ -54,12 +57,13 @@ class Readback:
         }
 
     def write_exr(self, path: str) -> None:
-        """Depth, shadows and camera, for `lightfit fit FILE`. The camera in the header has single
+        """Depth, shadows, facing and camera, for `lightfit fit FILE`. The camera in the header has single
         precision only; that of scene_file() is the exact one."""
         channels = {"Z": self.depth}
         for bit, light in enumerate(self.lights):
-            blocked = (self.shadow >> numpy.uint32(bit)) & 1
-            channels[f"shadow.{light['name']}"] = blocked.astype(numpy.float16)
+            for kind, words in (("shadow", self.shadow), ("facing", self.facing)):
+                values = (words >> numpy.uint32(bit)) & 1
+                channels[f"{kind}.{light['name']}"] = values.astype(numpy.float16)
         # The standard's camera looks along +z, and its NDC is (0, 0) in the upper left corner.
         camera_from_world = numpy.linalg.inv(self.camera_to_world)
         ndc_from_clip = numpy.diag([0.5, -0.5, 1.0, 1.0])
@@ -103,13 +107,16 @@ def render_readback(
             lit = _render(copy, stand_ins, cast_shadow=False)
             seen = _render(copy, stand_ins, cast_shadow=True)
         shadow = numpy.zeros((height, width), numpy.uint32)
+        facing = numpy.zeros_like(shadow)
         for number in range(len(lights)):
             full = _channel(lit, f"Combined_{_group(number)}.R")
             part = _channel(seen, f"Combined_{_group(number)}.R")
             shadow |= (part < 0.5 * full).astype(numpy.uint32) << numpy.uint32(number)
+            facing |= (full > 0).astype(numpy.uint32) << numpy.uint32(number)
         return Readback(
             depth=_channel(seen, "Depth.Z"),
             shadow=shadow,
+            facing=facing,
             lights=[
                 _light_entry(light, place, stand_in.data.type)
                 for light, place, stand_in in zip(lights, places, stand_ins)

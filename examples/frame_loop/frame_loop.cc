@@ -7,8 +7,8 @@
 
 #include "geometry/clip.h"
 #include "optimizer/tracking/async_optimizer.h"
+#include "render/generator/scene_generator.h"
 #include "render/readback_image.h"
-#include "render/scene_generator.h"
 
 int main() {  // NOLINT(bugprone-exception-escape): scene and cameras are good ones
   const lightfit::RayCaster engine =

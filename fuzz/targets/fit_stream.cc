@@ -36,7 +36,10 @@ class Stream {
     if (absl::Status status = pixels_->CheckComplete(); !status.ok()) return status;
     const Readback readback = pixels_->View();
     const auto num_pixels = static_cast<size_t>(readback.camera.width) * readback.camera.height;
-    Promise(readback.depth.size() == num_pixels && readback.shadow_bits.size() == num_pixels,
+    const auto is_all = [&](const auto& values) { return values.size() == num_pixels; };
+    Promise(is_all(readback.depth) && is_all(readback.shadow_bits) &&
+                (readback.facing_bits.empty() || is_all(readback.facing_bits)) &&
+                (readback.mapped_bits.empty() || is_all(readback.mapped_bits)),
             "a complete buffer has all pixels");
     return AnswerFit(request_, readback, context_);
   }

@@ -19,10 +19,10 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   fuzz::Promise(given->for_every_light.has_value() || !given->by_light.empty(),
                 "a file of matrices has one");
   if (given->for_every_light.has_value()) {
-    fuzz::Promise(given->for_every_light->allFinite(), "a matrix is finite");
+    fuzz::Promise(given->for_every_light->map_from_world.allFinite(), "a matrix is finite");
   }
   for (const auto& [light, matrix] : given->by_light) {
-    fuzz::Promise(matrix.allFinite(), "a matrix is finite");
+    fuzz::Promise(matrix.map_from_world.allFinite(), "a matrix is finite");
   }
   fuzz::PromiseOkOrError(given->Of("sun").status());
   return 0;

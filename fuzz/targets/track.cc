@@ -34,8 +34,9 @@ class Stream {
   absl::Status Begin(v1::TrackSetup setup) {
     ShortenSearch(setup.mutable_options());
     absl::StatusOr<TrackSession> session = TrackSession::Begin(setup);
-    if (session.ok()) session_.emplace(*std::move(session));
-    return session.status();
+    if (!session.ok()) return session.status();
+    session_.emplace(*std::move(session));
+    return absl::OkStatus();
   }
 
   absl::Status TakeFrame(const v1::TrackFrame& frame) {

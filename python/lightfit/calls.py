@@ -42,18 +42,20 @@ class Track(abc.ABC):
         camera: AnyCamera,
         lights: Lights,
         *,
+        facing: Any = None,
+        mapped: Any = None,
         source: str = "",
     ) -> FitResult:
         """The matrices of the next frame.
 
         number: the caller's, comes back in result.message.shot.number.
-        depth, shadow, camera, lights: as for `fit`. A light is known by its name, and forgotten
-            when a frame is without it.
+        depth, shadow, camera, lights, facing, mapped: as for `fit`. A light is known by its name,
+            and forgotten when a frame is without it.
 
         LightResult.action says what became of the matrix of the frame before. Raises LightfitError
         when the frame cannot be used; the tracker stays as it was, and the next frame may come.
         """
-        parts = readback_parts(depth, shadow, camera, lights, source)
+        parts = readback_parts(depth, shadow, camera, lights, source, facing, mapped)
         answer = self._update(track_frame(number, parts), parts.pixels)
         if answer.status.code != 0:
             raise error_of(answer.status.code, answer.status.message, self._request_id())
@@ -107,6 +109,8 @@ class Calls(abc.ABC):
         options: Optional[Options] = None,
         clip: Clip = "vulkan",
         foretell_wrong: bool = False,
+        facing: Any = None,
+        mapped: Any = None,
         source: str = "",
         timeout_s: Optional[float] = None,
         request_id: Optional[str] = None,
@@ -122,15 +126,20 @@ class Calls(abc.ABC):
             "position": [3, 1, 4]}, messages; or the path of a lights file. Names differ.
         map_size: (width, height) of every light's map, texels.
         options: every choice of a fit, None for the defaults: a dict such as {"search": "focused",
-            "margin_texels": 2}, or a lightfit.v1 FitOptions message.
+            "margin_texels": 2}, or a lightfit.v1 FitOptions message. {"border": "lit"}, the
+            default, "dark" or "auto": what look-ups outside the map find, see LightResult.border.
         clip: convention of LightResult.clip_from_world: "vulkan", "direct3d", "opengl",
             "reversed_z".
         foretell_wrong: whether LightResult.foretold_wrong is wanted.
+        facing: which surfaces face the light, by the sign of the renderer's cosine: as shadow, 1,
+            True or 255 where they do; or one (height, width) plane per light, None where it is not
+            known. Optional; "auto" needs it.
+        mapped: likewise, what the map that is drawn with says: 1 where it finds shadow. Optional.
         source: where the read-back came from; comes back in result.message.readback.source.
 
         Each light has its own status: a light without a matrix does not raise.
         """
-        parts = readback_parts(depth, shadow, camera, lights, source)
+        parts = readback_parts(depth, shadow, camera, lights, source, facing, mapped)
         request = fit_request(parts, map_size, options, clip, foretell_wrong)
         return FitResult.of(self._fit(request, parts.pixels, timeout_s, request_id))
 
@@ -174,7 +183,7 @@ class Calls(abc.ABC):
 
         summaries: files of `lightfit summarize` by name, or their bytes, or SummaryFile messages;
             all of the same lights and options. They are added up.
-        options: the search; samples, metric and cover are those of the summaries.
+        options: the search; samples, metric, cover and border are those of the summaries.
         map_size, clip: as for `fit`.
         """
         request = summary_request(summaries, map_size, options, clip)
@@ -218,6 +227,8 @@ class Calls(abc.ABC):
         matrices: Iterable[Candidate],
         *,
         options: Optional[Options] = None,
+        facing: Any = None,
+        mapped: Any = None,
         source: str = "",
         timeout_s: Optional[float] = None,
         request_id: Optional[str] = None,
@@ -226,9 +237,9 @@ class Calls(abc.ABC):
 
         matrices: any number per light, `Candidate.map("sun", map_from_world, (1024, 1024))` or
             `Candidate.clip("sun", clip_from_world, (1024, 1024), clip="opengl")`.
-        depth, shadow, camera, lights, options: as for `fit`.
+        depth, shadow, camera, lights, options, facing, mapped: as for `fit`.
         """
-        parts = readback_parts(depth, shadow, camera, lights, source)
+        parts = readback_parts(depth, shadow, camera, lights, source, facing, mapped)
         request = evaluate_request(parts, matrices, options)
         return EvaluateResult.of(self._call("Evaluate", request, timeout_s, request_id))
 
@@ -246,6 +257,8 @@ class Calls(abc.ABC):
         rules: Optional[allocation_pb2.MapSizeRules] = None,
         options: Optional[Options] = None,
         clip: Clip = "vulkan",
+        facing: Any = None,
+        mapped: Any = None,
         source: str = "",
         timeout_s: Optional[float] = None,
         request_id: Optional[str] = None,
@@ -261,7 +274,9 @@ class Calls(abc.ABC):
         parts: Optional[ReadbackParts] = None
         if any(part is not None for part in (depth, shadow, camera, lights)):
             given_camera: Any = camera  # says what it wants when it is missing, as the others do
-            parts = readback_parts(depth, shadow, given_camera, lights or (), source)
+            parts = readback_parts(
+                depth, shadow, given_camera, lights or (), source, facing, mapped
+            )
         request = allocate_request(
             parts, summaries, budget_texels, tolerance, weights, rules, options, clip
         )

@@ -15,19 +15,34 @@ from lightfit.request import ReadbackParts, readback_parts
 from lightfit.v1 import camera_pb2, light_pb2, result_pb2
 
 
+Planes = Tuple[Optional[NDArray[numpy.bool_]], ...]
+
+
 @dataclasses.dataclass(frozen=True, eq=False)
 class ExrReadback:
-    """The first four arguments of `fit`: depth, shadow, camera, lights."""
+    """The first four arguments of `fit`: depth, shadow, camera, lights; and facing and mapped."""
 
     depth: NDArray[numpy.float32]  # (h, w), the file's display window
     shadow: NDArray[numpy.uint32]  # (h, w), light l in bit l
     camera: Camera
     lights: Tuple[light_pb2.Light, ...]
-    light_status: List[result_pb2.Status]  # of each: code 0, or why its shadow could not be read
+    light_status: List[result_pb2.Status]  # of each: code 0, or why its channels cannot be read
     path: str
 
+    # One plane per light, (h, w) bool, None where the file has none of it; None: of no light.
+    facing: Optional[Planes] = None  # True where the surface faces the light
+    mapped: Optional[Planes] = None  # True where the map that is drawn with says shadow
+
     def parts(self) -> ReadbackParts:
-        return readback_parts(self.depth, self.shadow, self.camera, self.lights, self.path)
+        return readback_parts(
+            self.depth,
+            self.shadow,
+            self.camera,
+            self.lights,
+            self.path,
+            self.facing,
+            self.mapped,
+        )
 
 
 def read_exr(
@@ -44,8 +59,10 @@ def read_exr(
     shadow_channel: str = "",
     shadow_channels: Optional[Mapping[str, str]] = None,
     shadow_bits_channel: str = "",
+    facing_channel: str = "",
+    mapped_channel: str = "",
 ) -> ExrReadback:
-    """Reads depth, shadows and camera.
+    """Reads depth, shadows, camera, and what there is of facing and mapped.
 
     path: the file. lights: as for `fit`.
     camera: instead of the attributes worldToCamera and worldToNDC of the file.
@@ -59,6 +76,10 @@ def read_exr(
         blocked above 0.5.
     shadow_channels: light name to channel name, for lights that do not follow that.
     shadow_bits_channel: instead, one UINT channel that holds all shadows, light l in bit l.
+    facing_channel: the name of the channels that say which surfaces face a light,
+        "facing.{light}" unless given; they do above 0.5. Lights need not have one.
+    mapped_channel: likewise, "mapped.{light}" unless given: what the map that is drawn with says,
+        shadow above 0.5.
 
     Raises InvalidArgumentError when the file, its depth or its camera cannot be used. A light
     without a shadow channel has its own `light_status`, and no shadow.
@@ -70,6 +91,8 @@ def read_exr(
         "shadow_channel": shadow_channel,
         "shadow_channels": dict(shadow_channels or {}),
         "shadow_bits_channel": shadow_bits_channel,
+        "facing_channel": facing_channel,
+        "mapped_channel": mapped_channel,
         "depth_kind": 0 if depth_kind is None else depth_kind_number(depth_kind),
     }
     for name, value in (("near", near), ("far", far), ("pixel_aspect", pixel_aspect)):
@@ -79,7 +102,7 @@ def read_exr(
         message = camera.message if isinstance(camera, Camera) else camera
         options["camera"] = message.SerializeToString()
     name = os.fspath(path)
-    depth, shadow, found, statuses = _load.native().read_exr(
+    depth, shadow, facing, mapped, found, statuses = _load.native().read_exr(
         name, light_pb2.LightList(lights=messages).SerializeToString(), options
     )
     return ExrReadback(
@@ -89,4 +112,19 @@ def read_exr(
         lights=messages,
         light_status=[result_pb2.Status(code=code, message=text) for code, text in statuses],
         path=name,
+        facing=_planes(facing, len(messages)),
+        mapped=_planes(mapped, len(messages)),
+    )
+
+
+def _planes(
+    words_and_lights: Tuple[NDArray[numpy.uint32], int], num_lights: int
+) -> Optional[Planes]:
+    """Of words whose bit l means something where bit l of the lights is 1."""
+    words, lights = words_and_lights
+    if lights == 0:
+        return None
+    return tuple(
+        ((words >> numpy.uint32(light)) & 1) == 1 if (lights >> light) & 1 else None
+        for light in range(num_lights)
     )

@@ -33,6 +33,9 @@ _DEPTH_KINDS: Dict[str, int] = {
     "ndc-reversed": camera_pb2.DEPTH_KIND_NDC_REVERSED_ZERO_TO_ONE,
 }
 
+# Words of the command line that are longer in the schema.
+_WORDS = {"auto": "automatic"}
+
 Clip = Union[str, matrix_pb2.ClipConvention]
 MapSize = Tuple[int, int]
 Options = Union[options_pb2.FitOptions, Mapping[str, Any]]
@@ -88,7 +91,8 @@ def map_size_message(size: MapSize, field: str = "map_size") -> result_pb2.MapSi
 def options_message(options: Optional[Options]) -> Optional[options_pb2.FitOptions]:
     """options: a FitOptions message, or a dict of its fields.
 
-    Words of an enum may be written short: {"search": "focused"} for "SEARCH_FOCUSED".
+    Words of an enum may be written short, and as the command line has them: {"search": "focused"}
+    for "SEARCH_FOCUSED", {"border": "auto"} for "BORDER_CHOICE_AUTOMATIC".
     """
     if options is None or isinstance(options, options_pb2.FitOptions):
         return options
@@ -101,7 +105,8 @@ def options_message(options: Optional[Options]) -> Optional[options_pb2.FitOptio
     for name, value in options.items():
         field = fields.get(name)
         if field is not None and field.enum_type is not None and isinstance(value, str):
-            word = f"{name}_{value}".upper().replace("-", "_")
+            prefix = field.enum_type.values_by_number[0].name[: -len("UNSPECIFIED")]
+            word = prefix + _WORDS.get(value, value).upper().replace("-", "_")
             value = word if word in field.enum_type.values_by_name else value
         full[name] = value
     message = options_pb2.FitOptions()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from typing import Any, Dict, Iterator, Optional
+from typing import Any, Dict, Iterator, Optional, Tuple
 
 from lightfit import _load
 from lightfit.calls import Calls, Track
@@ -28,10 +28,9 @@ class Local(Calls):
         timeout_s: Optional[float],
         request_id: Optional[str],
     ) -> result_pb2.FitResult:
-        depth, bits = pixels.as_floats_and_bits()
         native = _load.native()
         with _named(request_id):
-            answer = native.fit(request.SerializeToString(), depth, bits, timeout_s)
+            answer = native.fit(request.SerializeToString(), *_arrays(pixels), timeout_s)
         result = result_pb2.FitResult()
         result.ParseFromString(answer)
         return result
@@ -77,12 +76,18 @@ class LocalTrack(Track):
     def _update(self, frame: service_pb2.TrackFrame, pixels: Pixels) -> service_pb2.TrackResult:
         if self._session is None:
             raise CancelledError("track: is closed, want a new one", request_id=self._id)
-        depth, bits = pixels.as_floats_and_bits()
         with _named(self._id):
-            answer = self._session.update(frame.SerializeToString(), depth, bits, self._timeout_s)
+            answer = self._session.update(
+                frame.SerializeToString(), *_arrays(pixels), self._timeout_s
+            )
         result = service_pb2.TrackResult()
         result.ParseFromString(answer)
         return result
+
+
+def _arrays(pixels: Pixels) -> Tuple[Any, Any, Any, Any]:
+    """Depth, shadow, facing and mapped as the compiled part takes them."""
+    return (*pixels.as_floats_and_bits(), *pixels.optional_bits())
 
 
 @contextlib.contextmanager

@@ -4,7 +4,7 @@ the compiled part takes. Pixels are copied only where their layout or type asks 
 from __future__ import annotations
 
 import dataclasses
-from typing import Any, Iterator, Optional, Tuple
+from typing import Any, Dict, Iterator, Optional, Sequence, Tuple
 
 import numpy
 from numpy.typing import NDArray
@@ -20,13 +20,77 @@ _DEPTH_FORMATS = {
 }
 
 
+_MEANINGS = {
+    "shadow": "light is blocked",
+    "facing": "the surface faces the light",
+    "mapped": "the map says shadow",
+}
+
+Plane = NDArray[numpy.uint8]  # (h, w); 128 and above counts
+
+
+@dataclasses.dataclass(frozen=True)
+class Bits:
+    """One bit per pixel and light. Exactly one of bits and planes is there; all arrays are
+    contiguous and little-endian."""
+
+    name: str  # of the fields NAME_bits, NAME_planes ... of a Readback
+    bits: Optional[NDArray[numpy.uint32]]  # (h, w), of all lights
+    planes: Optional[Sequence[Optional[Plane]]]  # of each light; None where it is not known
+
+    @property
+    def num_bytes(self) -> int:
+        if self.bits is not None:
+            return int(self.bits.nbytes)
+        return sum(int(plane.nbytes) for _, plane in self._known())
+
+    def put_header(self, readback: readback_pb2.Readback) -> None:
+        """The format, and of which lights it is known unless that is all of them."""
+        word = "SHADOW_FORMAT_BITS" if self.planes is None else "SHADOW_FORMAT_PLANES"
+        setattr(readback, f"{self.name}_format", readback_pb2.ShadowFormat.Value(word))
+        if self.planes is not None and any(plane is None for plane in self.planes):
+            known = sum(1 << index for index, _ in self._known())
+            setattr(readback, f"{self.name}_lights", known)
+
+    def fill(self, readback: readback_pb2.Readback) -> None:
+        if self.bits is not None:
+            setattr(readback, f"{self.name}_bits", self.bits.tobytes())
+        for plane in self.planes or ():
+            planes = getattr(readback, f"{self.name}_planes")
+            planes.append(b"" if plane is None else plane.tobytes())
+
+    def chunks(self) -> Iterator[readback_pb2.PixelChunk]:
+        fields: Dict[str, Any]
+        if self.bits is not None:
+            for piece in _pieces(self.bits):
+                fields = {f"{self.name}_bits": piece}
+                yield readback_pb2.PixelChunk(**fields)
+        for index, plane in self._known():
+            for piece in _pieces(plane):
+                fields = {f"{self.name}_plane": piece, f"{self.name}_plane_index": index}
+                yield readback_pb2.PixelChunk(**fields)
+
+    def as_words(self, size: Tuple[int, ...]) -> NDArray[numpy.uint32]:
+        """(h, w), light l in bit l."""
+        if self.bits is not None:
+            return self.bits.astype(numpy.uint32, copy=False)
+        words = numpy.zeros(size, numpy.uint32)
+        for index, plane in self._known():
+            words |= (plane >= 128).astype(numpy.uint32) << numpy.uint32(index)
+        return words
+
+    def _known(self) -> Iterator[Tuple[int, Plane]]:
+        for index, plane in enumerate(self.planes or ()):
+            if plane is not None:
+                yield index, plane
+
+
 @dataclasses.dataclass(frozen=True)
 class Pixels:
-    """Exactly one of bits and planes is there; all arrays are contiguous and little-endian."""
-
-    depth: NDArray[Any]  # (h, w) float32 or float16
-    bits: Optional[NDArray[numpy.uint32]]  # (h, w)
-    planes: Optional[NDArray[numpy.uint8]]  # (lights, h, w); 128 and above is blocked
+    depth: NDArray[Any]  # (h, w) float32 or float16, contiguous and little-endian
+    shadow: Bits
+    facing: Optional[Bits] = None
+    mapped: Optional[Bits] = None
 
     @property
     def height(self) -> int:
@@ -38,55 +102,57 @@ class Pixels:
 
     @property
     def num_bytes(self) -> int:
-        shadow = self.bits if self.bits is not None else self.planes
-        assert shadow is not None
-        return int(self.depth.nbytes + shadow.nbytes)
+        return int(self.depth.nbytes) + sum(bits.num_bytes for bits in self._all_bits())
 
     def header(self) -> readback_pb2.Readback:
         """The formats, without pixels."""
         readback = readback_pb2.Readback()
         readback.depth_format = _DEPTH_FORMATS[self.depth.dtype.newbyteorder("=")]
-        readback.shadow_format = (
-            readback_pb2.SHADOW_FORMAT_PLANES
-            if self.bits is None
-            else readback_pb2.SHADOW_FORMAT_BITS
-        )
+        for bits in self._all_bits():
+            bits.put_header(readback)
         return readback
 
     def fill(self, readback: readback_pb2.Readback) -> None:
         """Copies all pixels into a message."""
         readback.depth = self.depth.tobytes()
-        if self.bits is not None:
-            readback.shadow_bits = self.bits.tobytes()
-        if self.planes is not None:
-            readback.shadow_planes.extend(plane.tobytes() for plane in self.planes)
+        for bits in self._all_bits():
+            bits.fill(readback)
 
     def chunks(self) -> Iterator[readback_pb2.PixelChunk]:
         """All pixels in messages of at most 1 MiB of them."""
         for piece in _pieces(self.depth):
             yield readback_pb2.PixelChunk(depth=piece)
-        if self.bits is not None:
-            for piece in _pieces(self.bits):
-                yield readback_pb2.PixelChunk(shadow_bits=piece)
-        if self.planes is not None:
-            for index, plane in enumerate(self.planes):
-                for piece in _pieces(plane):
-                    yield readback_pb2.PixelChunk(shadow_plane=piece, shadow_plane_index=index)
+        for bits in self._all_bits():
+            yield from bits.chunks()
 
     def as_floats_and_bits(self) -> Tuple[NDArray[numpy.float32], NDArray[numpy.uint32]]:
         """What the library takes: (h, w) float32 and (h, w) uint32. Exact for halves, too."""
-        bits = self.bits
-        if self.planes is not None:
-            bits = numpy.zeros(self.depth.shape, numpy.uint32)
-            for index, plane in enumerate(self.planes):
-                bits |= (plane >= 128).astype(numpy.uint32) << numpy.uint32(index)
-        assert bits is not None
-        return self.depth.astype(numpy.float32, copy=False), bits.astype(numpy.uint32, copy=False)
+        return self.depth.astype(numpy.float32, copy=False), self.shadow.as_words(self.depth.shape)
+
+    def optional_bits(
+        self,
+    ) -> Tuple[Optional[NDArray[numpy.uint32]], Optional[NDArray[numpy.uint32]]]:
+        """Facing and mapped, likewise."""
+        size = self.depth.shape
+        return (
+            None if self.facing is None else self.facing.as_words(size),
+            None if self.mapped is None else self.mapped.as_words(size),
+        )
+
+    def _all_bits(self) -> Iterator[Bits]:
+        yield self.shadow
+        if self.facing is not None:
+            yield self.facing
+        if self.mapped is not None:
+            yield self.mapped
 
 
-def check_pixels(depth: Any, shadow: Any, num_lights: int) -> Pixels:
+def check_pixels(
+    depth: Any, shadow: Any, num_lights: int, facing: Any = None, mapped: Any = None
+) -> Pixels:
     """depth: (h, w) float32 or float16. shadow: (h, w) uint32 bits, or (num_lights, h, w) planes of
-    bool or uint8. Raises InvalidArgumentError with what was given and what is wanted."""
+    bool or uint8. facing, mapped: the same, or one (h, w) plane per light with None where it is not
+    known; None: of no light. Raises InvalidArgumentError with what was given and what is wanted."""
     depth = _array(depth, "depth")
     if depth.dtype.newbyteorder("=") not in _DEPTH_FORMATS:
         hint = ""
@@ -99,48 +165,85 @@ def check_pixels(depth: Any, shadow: Any, num_lights: int) -> Pixels:
             f"depth: has shape {depth.shape}, want (height, width), top row first{hint}"
         )
     depth = _contiguous(depth)
-    shadow = _array(shadow, "shadow")
-    if shadow.ndim == 2:
-        return Pixels(depth, _check_bits(shadow, depth.shape), None)
-    return Pixels(depth, None, _check_planes(shadow, depth.shape, num_lights))
+    return Pixels(
+        depth,
+        _check_bits("shadow", shadow, depth.shape, num_lights),
+        _check_optional("facing", facing, depth.shape, num_lights),
+        _check_optional("mapped", mapped, depth.shape, num_lights),
+    )
 
 
-def _check_bits(shadow: NDArray[Any], size: Tuple[int, ...]) -> NDArray[numpy.uint32]:
-    if shadow.dtype.newbyteorder("=") != numpy.uint32:
-        hint = ": shadow.astype(numpy.uint32)" if shadow.dtype.kind == "i" else ""
-        if shadow.dtype.kind == "b" or shadow.dtype == numpy.uint8:
-            hint = "; planes, one per light, have shape (lights, height, width): shadow[None]"
+def _check_bits(field: str, values: Any, size: Tuple[int, ...], num_lights: int) -> Bits:
+    values = _array(values, field)
+    if values.ndim == 2:
+        return Bits(field, _check_words(field, values, size), None)
+    return Bits(field, None, list(_check_planes(field, values, size, num_lights)))
+
+
+def _check_optional(
+    field: str, values: Any, size: Tuple[int, ...], num_lights: int
+) -> Optional[Bits]:
+    if not isinstance(values, (list, tuple)):
+        return None if values is None else _check_bits(field, values, size, num_lights)
+    if len(values) != num_lights:
         raise InvalidArgumentError(
-            f"shadow: has shape {shadow.shape} and dtype {shadow.dtype}, want uint32 bits{hint}"
+            f"{field}: has {len(values)} planes, want {num_lights}, one per light, None where it "
+            "is not known"
         )
-    if shadow.shape != size:
+    planes = [
+        None if plane is None else _check_plane(f"{field}[{index}]", plane, size)
+        for index, plane in enumerate(values)
+    ]
+    return None if all(plane is None for plane in planes) else Bits(field, None, planes)
+
+
+def _check_words(
+    field: str, words: NDArray[Any], size: Tuple[int, ...]
+) -> NDArray[numpy.uint32]:
+    if words.dtype.newbyteorder("=") != numpy.uint32:
+        hint = f": {field}.astype(numpy.uint32)" if words.dtype.kind == "i" else ""
+        if words.dtype.kind == "b" or words.dtype == numpy.uint8:
+            hint = f"; planes, one per light, have shape (lights, height, width): {field}[None]"
         raise InvalidArgumentError(
-            f"shadow: has shape {shadow.shape}, want that of depth, {size}"
+            f"{field}: has shape {words.shape} and dtype {words.dtype}, want uint32 bits{hint}"
         )
-    return _contiguous(shadow)
+    if words.shape != size:
+        raise InvalidArgumentError(f"{field}: has shape {words.shape}, want that of depth, {size}")
+    return _contiguous(words)
 
 
 def _check_planes(
-    shadow: NDArray[Any], size: Tuple[int, ...], num_lights: int
+    field: str, planes: NDArray[Any], size: Tuple[int, ...], num_lights: int
 ) -> NDArray[numpy.uint8]:
     want = (num_lights, *size)
-    if shadow.shape != want:
+    if planes.shape != want:
         hint = ""
-        if shadow.shape == (*size, num_lights):
-            hint = "; planes come first: numpy.moveaxis(shadow, -1, 0)"
+        if planes.shape == (*size, num_lights):
+            hint = f"; planes come first: numpy.moveaxis({field}, -1, 0)"
         raise InvalidArgumentError(
-            f"shadow: has shape {shadow.shape}, want {want}, one plane per light, or {size} of "
+            f"{field}: has shape {planes.shape}, want {want}, one plane per light, or {size} of "
             f"uint32 bits{hint}"
         )
-    if shadow.dtype == numpy.bool_:
-        return _contiguous(shadow).view(numpy.uint8) * numpy.uint8(255)
-    if shadow.dtype != numpy.uint8:
-        hint = ": shadow > 0.5" if shadow.dtype.kind == "f" else ""
+    return _check_plane_values(field, planes)
+
+
+def _check_plane(field: str, plane: Any, size: Tuple[int, ...]) -> Plane:
+    plane = _array(plane, field)
+    if plane.shape != size:
+        raise InvalidArgumentError(f"{field}: has shape {plane.shape}, want that of depth, {size}")
+    return _check_plane_values(field, plane)
+
+
+def _check_plane_values(field: str, planes: NDArray[Any]) -> NDArray[numpy.uint8]:
+    if planes.dtype == numpy.bool_:
+        return _contiguous(planes).view(numpy.uint8) * numpy.uint8(255)
+    if planes.dtype != numpy.uint8:
+        hint = f": {field} > 0.5" if planes.dtype.kind == "f" else ""
         raise InvalidArgumentError(
-            f"shadow: has dtype {shadow.dtype}, want planes of bool, or of uint8 with 255 where "
-            f"light is blocked{hint}"
+            f"{field}: has dtype {planes.dtype}, want planes of bool, or of uint8 with 255 where "
+            f"{_MEANINGS[field.split('[')[0]]}{hint}"
         )
-    return _contiguous(shadow)
+    return _contiguous(planes)
 
 
 def _array(values: Any, field: str) -> NDArray[Any]:

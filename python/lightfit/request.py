@@ -47,10 +47,16 @@ class ReadbackParts:
 
 
 def readback_parts(
-    depth: Any, shadow: Any, camera: AnyCamera, lights: Lights, source: str = ""
+    depth: Any,
+    shadow: Any,
+    camera: AnyCamera,
+    lights: Lights,
+    source: str = "",
+    facing: Any = None,
+    mapped: Any = None,
 ) -> ReadbackParts:
     messages = light_messages(lights)
-    pixels = check_pixels(depth, shadow, len(messages))
+    pixels = check_pixels(depth, shadow, len(messages), facing, mapped)
     header = pixels.header()
     header.camera.CopyFrom(camera_message(camera, pixels.width, pixels.height))
     header.source = source

@@ -59,6 +59,7 @@ class Samples:
     facing_away: int
     edge_on: int
     used: int
+    beyond_map: int  # far outside what a map with a dark border must cover
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -76,6 +77,12 @@ class LightResult:
 
     # (4, 4): the same for a renderer, clip space in the convention that was asked for.
     clip_from_world: Optional[Matrix]
+
+    # What look-ups outside the map must find, w <= 0 included: "lit" or "dark". "lit" unless options
+    # ask for another border. And how the fit knew which surfaces face the light: "given" by the
+    # read-back or "guessed" from its depth; None where there was none.
+    border: Optional[str]
+    facing: Optional[str]
 
     # Sum over the samples of weight times footprint. Comparable between maps of one size on one
     # read-back only.
@@ -108,6 +115,8 @@ class LightResult:
             map_size=(message.map.width, message.map.height),
             map_from_world=_matrix(message.map_from_world) if ok else None,
             clip_from_world=_matrix(message.clip_from_world) if ok else None,
+            border=_lower_word(matrix_pb2.Border, message.border, "BORDER_"),
+            facing=_lower_word(result_pb2.FacingSource, message.facing, "FACING_SOURCE_"),
             energy=message.energies.final if ok else None,
             footprint=_footprint(message.footprint) if ok else None,
             samples=_samples(message.samples) if ok else None,
@@ -251,3 +260,8 @@ def _samples(message: result_pb2.SampleCounts) -> Samples:
 def _word(enum: Any, number: int, prefix: str) -> str:
     word = enum.DESCRIPTOR.values_by_number.get(number)
     return str(word.name)[len(prefix) :] if word else str(number)
+
+
+def _lower_word(enum: Any, number: int, prefix: str) -> Optional[str]:
+    """None for what is unspecified."""
+    return _word(enum, number, prefix).lower() if number != 0 else None

@@ -89,29 +89,38 @@ py::bytes Answer(std::optional<double> timeout_s, const Work& work) {
   Raise(answer.status());
 }
 
-// Refers to the arrays.
-absl::StatusOr<Readback> ReadbackOf(const v1::Readback& proto,
-                                    int num_lights,
-                                    absl::Span<const float> depth,
-                                    absl::Span<const uint32_t> shadow_bits) {
-  const absl::StatusOr<ReadbackHeader> header =
-      ReadbackHeaderFromProto(proto, num_lights, ContextOf({}).limits);
-  if (!header.ok()) return header.status();
-  return Readback{header->camera, depth, header->depth_kind, shadow_bits};
-}
-
 template <typename Value>
 absl::Span<const Value> SpanOf(const py::array_t<Value, py::array::c_style>& array) {
   return {array.data(), static_cast<size_t>(array.size())};
 }
 
+absl::Span<const uint32_t> SpanOf(const std::optional<BitsArray>& array) {
+  return array.has_value() ? SpanOf(*array) : absl::Span<const uint32_t>();
+}
+
+// Refers to the arrays.
+absl::StatusOr<Readback> ReadbackOfArrays(const v1::Readback& proto,
+                                          int num_lights,
+                                          const DepthArray& depth,
+                                          const BitsArray& shadow_bits,
+                                          const std::optional<BitsArray>& facing_bits,
+                                          const std::optional<BitsArray>& mapped_bits) {
+  const absl::StatusOr<ReadbackHeader> header =
+      ReadbackHeaderFromProto(proto, num_lights, ContextOf({}).limits);
+  if (!header.ok()) return header.status();
+  return ReadbackOf(
+      *header, SpanOf(depth), SpanOf(shadow_bits), SpanOf(facing_bits), SpanOf(mapped_bits));
+}
+
 py::bytes Fit(const std::string& request_bytes,
               const DepthArray& depth,
               const BitsArray& shadow_bits,
+              const std::optional<BitsArray>& facing_bits,
+              const std::optional<BitsArray>& mapped_bits,
               std::optional<double> timeout_s) {
   const auto request = Parsed<v1::FitRequest>(request_bytes);
-  const absl::StatusOr<Readback> readback =
-      ReadbackOf(request.readback(), request.lights_size(), SpanOf(depth), SpanOf(shadow_bits));
+  const absl::StatusOr<Readback> readback = ReadbackOfArrays(
+      request.readback(), request.lights_size(), depth, shadow_bits, facing_bits, mapped_bits);
   if (!readback.ok()) Raise(readback.status());
   return Answer(timeout_s,
                 [&](const CallContext& context) { return AnswerFit(request, *readback, context); });
@@ -145,10 +154,12 @@ class TrackedSequence {
   py::bytes Update(const std::string& frame_bytes,
                    const DepthArray& depth,
                    const BitsArray& shadow_bits,
+                   const std::optional<BitsArray>& facing_bits,
+                   const std::optional<BitsArray>& mapped_bits,
                    std::optional<double> timeout_s) {
     const auto frame = Parsed<v1::TrackFrame>(frame_bytes);
-    const absl::StatusOr<Readback> readback =
-        ReadbackOf(frame.readback(), frame.lights_size(), SpanOf(depth), SpanOf(shadow_bits));
+    const absl::StatusOr<Readback> readback = ReadbackOfArrays(
+        frame.readback(), frame.lights_size(), depth, shadow_bits, facing_bits, mapped_bits);
     auto [answer, is_late] = RunStoppable(timeout_s, [&](const std::stop_token& stop) {
       const std::lock_guard<std::mutex> lock(mutex_);
       return session_.Update(frame, readback, stop);
@@ -189,7 +200,7 @@ void Take(const py::dict& fields, const char* name, Value* value) {
 // Fields as read_exr() of lightfit/exr.py names them; empty ones mean the default.
 absl::StatusOr<ReadbackExrOptions> ExrOptionsOf(const py::dict& fields) {
   ReadbackExrOptions options;
-  std::string convention, shadow_channel, camera_bytes;
+  std::string convention, shadow_channel, facing_channel, mapped_channel, camera_bytes;
   Take(fields, "camera_convention", &convention);
   Take(fields, "near", &options.camera_exr.near);
   Take(fields, "far", &options.camera_exr.far);
@@ -198,8 +209,12 @@ absl::StatusOr<ReadbackExrOptions> ExrOptionsOf(const py::dict& fields) {
   Take(fields, "shadow_channel", &shadow_channel);
   Take(fields, "shadow_channels", &options.shadow_channels);
   Take(fields, "shadow_bits_channel", &options.shadow_bits_channel);
+  Take(fields, "facing_channel", &facing_channel);
+  Take(fields, "mapped_channel", &mapped_channel);
   Take(fields, "camera", &camera_bytes);
   if (!shadow_channel.empty()) options.shadow_channel_format = shadow_channel;
+  if (!facing_channel.empty()) options.facing_channel_format = facing_channel;
+  if (!mapped_channel.empty()) options.mapped_channel_format = mapped_channel;
   const absl::StatusOr<CameraConvention> parsed = ParseCameraConvention(convention);
   if (!parsed.ok()) return parsed.status();
   options.camera_exr.convention = *parsed;
@@ -218,7 +233,8 @@ absl::StatusOr<ReadbackExrOptions> ExrOptionsOf(const py::dict& fields) {
   return options;
 }
 
-// (depth, shadow bits, lightfit.v1.Camera, [(code, message) of each light])
+// (depth, shadow bits, (facing bits, lights), (mapped bits, lights), lightfit.v1.Camera, [(code,
+// message) of each light]); of the lights 0 where there are no bits.
 py::tuple ReadExr(const std::string& path,
                   const std::string& lights_bytes,
                   const py::dict& fields) {
@@ -241,9 +257,16 @@ py::tuple ReadExr(const std::string& path,
     statuses.append(py::make_tuple(static_cast<int>(status.code()), std::string(status.message())));
   }
   const int width = file->camera.width, height = file->camera.height;
+  const auto optional = [&](std::vector<uint32_t> words, uint32_t lights) {
+    py::object array = py::none();
+    if (!words.empty()) array = ArrayOf(std::move(words), width, height);
+    return py::make_tuple(array, lights);
+  };
   return py::make_tuple(
       ArrayOf(std::move(file->depth), width, height),
       ArrayOf(std::move(file->shadow_bits), width, height),
+      optional(std::move(file->facing_bits), file->facing_lights),
+      optional(std::move(file->mapped_bits), file->mapped_lights),
       py::bytes(CameraToProto(file->camera, file->depth_kind).SerializeAsString()),
       statuses);
 }

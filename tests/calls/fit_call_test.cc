@@ -94,7 +94,7 @@ TEST(FitCall, ALightThatCannotBeUsedFailsAlone) {
   EXPECT_EQ(result->lights(1).SerializeAsString(), both->lights(1).SerializeAsString());
 }
 
-TEST(FitCall, ALightWithoutShadowsFailsAlone) {
+TEST(FitCall, ALightWithoutShadowsHasTheFocusedMap) {
   v1::FitRequest request = FloorRequest();
   v1::Light& third = *request.add_lights();
   third.set_name("fill");
@@ -102,8 +102,8 @@ TEST(FitCall, ALightWithoutShadowsFailsAlone) {
   const auto result = AnswerFit(request, CallContext());
   ASSERT_THAT(result, testing::IsOk());
   EXPECT_EQ(result->lights(0).status().code(), 0);
-  EXPECT_EQ(result->lights(2).status().code(), 9);
-  EXPECT_THAT(result->lights(2).status().message(), HasSubstr("no shadow boundary"));
+  EXPECT_EQ(result->lights(2).status().code(), 0);
+  EXPECT_EQ(result->lights(2).stop_reason(), v1::STOP_REASON_TOO_FEW_SAMPLES);
 }
 
 TEST(FitCall, RefusesWhatCannotBeAnswered) {

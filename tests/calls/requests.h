@@ -37,6 +37,14 @@ inline v1::Readback ReadbackMessage(const Readback& readback) {
   };
   proto.set_depth(bytes(readback.depth));
   proto.set_shadow_bits(bytes(readback.shadow_bits));
+  if (!readback.facing_bits.empty()) {
+    proto.set_facing_bits(bytes(readback.facing_bits));
+    proto.set_facing_lights(readback.facing_lights);
+  }
+  if (!readback.mapped_bits.empty()) {
+    proto.set_mapped_bits(bytes(readback.mapped_bits));
+    proto.set_mapped_lights(readback.mapped_lights);
+  }
   return proto;
 }
 

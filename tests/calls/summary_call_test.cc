@@ -150,6 +150,8 @@ TEST(SummaryCall, BadInputsAreNamed) {
        "options.metric = METRIC_L2: the summaries were made with METRIC_L1_ACROSS_EDGE"},
       {[](Request* r) { r->mutable_options()->set_cover(v1::COVER_RECEIVERS); },
        "options.cover = COVER_RECEIVERS: the summaries were made with COVER_SHADOWED"},
+      {[](Request* r) { r->mutable_options()->set_border(v1::BORDER_CHOICE_DARK); },
+       "options.border = BORDER_CHOICE_DARK: the summaries were made with BORDER_CHOICE_LIT"},
       {[](Request* r) { r->mutable_options()->set_along_edge_share(0.5); },
        "options.along_edge_share = 0.5: the summaries were made with 0.05"},
       {[](Request* r) { r->mutable_options()->mutable_samples()->set_edge_window(3); },

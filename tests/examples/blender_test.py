@@ -142,14 +142,16 @@ def test_the_lights_carry_their_matrices_in_the_saved_scene(fitted: Fitted) -> N
 def test_the_kept_readback_gives_the_same_matrices_to_the_last_bit(fitted: Fitted) -> None:
     readback = fitted.readback
     here = lightfit.fit(
-        readback.depth, readback.shadow, fitted.camera, readback.lights, (2048, 1024)
+        readback.depth, readback.shadow, fitted.camera, readback.lights, (2048, 1024),
+        facing=readback.facing,
     )
+    assert {light.facing for light in fitted.message.lights} == {here.lights[0].message.facing}
     assert matrices(here.message) == matrices(fitted.message)
     again = fitted.folder / "again.json"
     kept = fitted.folder / "0001.json"
     subprocess.run(
         [program(), "fit", fitted.folder / "0001.exr", "--lights", kept, "--camera", kept,
-         "--map", "2048x1024", "--json", again, "--quiet"],
+         "--map", "2048x1024", "--border", "lit", "--json", again, "--quiet"],
         check=True,
     )
     assert matrices(read_result(again)) == matrices(fitted.message)
@@ -158,7 +160,8 @@ def test_the_kept_readback_gives_the_same_matrices_to_the_last_bit(fitted: Fitte
 def test_the_camera_in_the_kept_header_is_the_scenes(fitted: Fitted) -> None:
     stored = lightfit.read_exr(fitted.folder / "0001.exr", fitted.folder / "0001.json")
     with_header = lightfit.fit(
-        stored.depth, stored.shadow, stored.camera, stored.lights, (2048, 1024)
+        stored.depth, stored.shadow, stored.camera, stored.lights, (2048, 1024),
+        facing=stored.facing,
     )
     for light, expected in zip(with_header.lights, fitted.message.lights):
         wanted = numpy.array(expected.map_from_world.m).reshape(4, 4)
@@ -195,6 +198,13 @@ def check_shadows(fitted: Fitted, meshes: pathlib.Path, min_shadowed: float) -> 
         assert expected[both].mean() >= min_shadowed, light.name
         agreement = (blocked == expected)[both].mean()
         print(f"{light.name}: {100 * agreement:.3f} % of pixels agree")
+        assert agreement >= MIN_AGREEMENT, light.name
+        assert seen.facing is not None and truth.facing is not None
+        faces, expected_faces = seen.facing[bit], truth.facing[bit]
+        assert faces is not None and expected_faces is not None
+        assert not (blocked & ~faces).any(), light.name
+        agreement = (faces == expected_faces)[both].mean()
+        print(f"{light.name}: {100 * agreement:.3f} % of pixels agree on what faces it")
         assert agreement >= MIN_AGREEMENT, light.name
 
 

@@ -21,8 +21,9 @@ using testing::TemporaryFolder;
 const std::vector<Light> kLights = {Light::Point("sun", Eigen::Vector3d::UnitX(), 0)};
 
 // Half precision holds these depths, so that lossy compression keeps them too.
-double DepthValue(int x, int y) { return 2.0 + 0.25 * (x / 8) + 0.5 * (y / 8); }
-double SunShadow(int x, int y) { return (x / 8 + y / 8) % 2; }
+int Block(int pixel) { return pixel / 8; }
+double DepthValue(int x, int y) { return 2.0 + 0.25 * Block(x) + 0.5 * Block(y); }
+double SunShadow(int x, int y) { return (Block(x) + Block(y)) % 2; }
 
 // 40 x 24 pixels of which 32 x 32 have data, beyond all but one edge of the display.
 ExrPart Part() {
@@ -185,7 +186,7 @@ TEST(ExrForms, DeepPartsAreRefused) {
   header.setType(Imf::DEEPSCANLINE);
   header.compression() = Imf::ZIPS_COMPRESSION;
   // Without pixels, which nobody gets to.
-  Imf::DeepScanLineOutputFile(folder.File("a.exr").c_str(), header);
+  { const Imf::DeepScanLineOutputFile without_pixels(folder.File("a.exr").c_str(), header); }
   const auto file = ReadReadbackExr(folder.File("a.exr"), kLights);
   EXPECT_EQ(file.status().code(), absl::StatusCode::kInvalidArgument);
   EXPECT_TRUE(HasAll(file.status().message(), {"a.exr", "part 0 is deep", "flatten"}));

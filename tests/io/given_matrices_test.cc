@@ -33,9 +33,10 @@ Eigen::Matrix4d Parsed(const std::string& json, MapSize map) {
   const absl::StatusOr<GivenMatrices> given = ParseGivenMatrices("engine", json, map);
   EXPECT_THAT(given, IsOk());
   if (!given.ok()) return Eigen::Matrix4d::Zero();
-  const absl::StatusOr<Eigen::Matrix4d> matrix = given->Of("any light");
+  const absl::StatusOr<GivenMatrix> matrix = given->Of("any light");
   EXPECT_THAT(matrix, IsOk());
-  return *matrix;
+  EXPECT_EQ(matrix->border, Border::kLit);
+  return matrix->map_from_world;
 }
 
 TEST(GivenMatrices, ReadsEveryFormOfSixteenNumbers) {
@@ -86,10 +87,36 @@ TEST(GivenMatrices, AResultHasOneForEachLight) {
   const absl::StatusOr<GivenMatrices> given = ParseGivenMatrices("engine", json, {400, 300});
   ASSERT_THAT(given, IsOk());
   EXPECT_EQ(given->by_light.size(), 1u);
-  const absl::StatusOr<Eigen::Matrix4d> sun = given->Of("sun");
+  const absl::StatusOr<GivenMatrix> sun = given->Of("sun");
   ASSERT_THAT(sun, IsOk());
-  EXPECT_EQ((*sun)(0, 3), 8);
+  EXPECT_EQ(sun->map_from_world(0, 3), 8);
   EXPECT_THAT(given->Of("noon"), StatusIs(absl::StatusCode::kNotFound, HasSubstr("has \"sun\"")));
+}
+
+TEST(GivenMatrices, ABorderIsLitUnlessTheFileSaysDark) {
+  const MapSize map = {400, 300};
+  const auto border_of = [&map](const std::string& json) {
+    SCOPED_TRACE(json);
+    const absl::StatusOr<GivenMatrices> given = ParseGivenMatrices("engine", json, map);
+    EXPECT_THAT(given, IsOk());
+    return given.ok() ? given->Of("sun")->border : Border::kLit;
+  };
+  const std::string one = std::string("{\"clip_from_world\": ") + kFlat;
+  EXPECT_EQ(border_of(one + ", \"border\": \"dark\"}"), Border::kDark);
+  EXPECT_EQ(border_of(one + ", \"border\": \"BORDER_DARK\"}"), Border::kDark);
+  EXPECT_EQ(border_of(one + ", \"border\": \"lit\"}"), Border::kLit);
+
+  // Of a result, each light has its own.
+  const std::string result =
+      std::string(
+          "{\"lights\": [{\"name\": \"sun\", \"map\": {\"width\": 9, \"height\": 9}, "
+          "\"mapFromWorld\": {\"m\": ") +
+      kFlat + "}";
+  EXPECT_EQ(border_of(result + "}]}"), Border::kLit);
+  EXPECT_EQ(border_of(result + ", \"border\": \"BORDER_LIT\"}]}"), Border::kLit);
+  EXPECT_EQ(border_of(result + ", \"border\": \"BORDER_DARK\"}]}"), Border::kDark);
+  EXPECT_THAT(ParseGivenMatrices("engine", result + ", \"border\": 7}]}", map),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("\"sun\": border = 7")));
 }
 
 TEST(GivenMatrices, SaysWhatIsWrong) {
@@ -104,6 +131,9 @@ TEST(GivenMatrices, SaysWhatIsWrong) {
       {std::string("{\"map_from_world\": ") + kFlat + ", \"map\": 3}", "map = 0x0"},
       {std::string("{\"clip_from_world\": ") + kFlat + ", \"clip\": \"metal\"}", "\"metal\""},
       {std::string("{\"clip_from_world\": ") + kFlat + ", \"clip\": 7}", "clip: want"},
+      {std::string("{\"map_from_world\": ") + kFlat + ", \"border\": \"grey\"}",
+       "border = \"grey\", want \"lit\" or \"dark\""},
+      {std::string("{\"map_from_world\": ") + kFlat + ", \"border\": 2}", "border = "},
       {"{\"lights\": [{\"name\": \"sun\", \"direction\": [0, 0, -1]}]}", "none of them"},
       {"{\"lights\": 3}", "JSON"}};
   for (const auto& [json, words] : files) {

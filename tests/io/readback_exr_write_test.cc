@@ -25,7 +25,7 @@ constexpr int kWidth = 23, kHeight = 17;
 struct Case {
   Camera camera;
   std::vector<float> depth;
-  std::vector<uint32_t> shadow_bits;
+  std::vector<uint32_t> shadow_bits, facing_bits, mapped_bits;
   std::vector<Light> lights = {Light::Directional("sun", {1, 2, -3}, 0),
                                Light::Point("key.left", {4, 5, 6}, 7),
                                Light::Point("a light with spaces", {4, 5, 6}, 31)};
@@ -35,6 +35,8 @@ struct Case {
     for (int i = 0; i < kWidth * kHeight; ++i) {
       depth.push_back(i % 5 == 0 ? 1e10F : std::ldexp(1.0F + random() * 0x1p-32F, i % 40 - 20));
       shadow_bits.push_back(random());
+      facing_bits.push_back(random());
+      mapped_bits.push_back(random());
     }
   }
   Readback View() const {
@@ -90,6 +92,27 @@ TEST(WriteReadbackExr, ReadsBackAsItWas) {
     for (size_t i = 0; i < written.depth.size(); ++i) {
       EXPECT_EQ(file->shadow_bits[i], written.shadow_bits[i] & used);
     }
+  }
+}
+
+// Those of the lights of which they are known.
+TEST(WriteReadbackExr, OptionalBitsReadBackAsTheyWere) {
+  const TemporaryFolder folder;
+  const std::string path = folder.File("a.exr");
+  const Case written(FarCamera());
+  Readback readback = written.View();
+  readback.facing_bits = written.facing_bits;
+  readback.facing_lights = ~(1U << 7);
+  readback.mapped_bits = written.mapped_bits;
+  readback.mapped_lights = 1U << 7;
+  ASSERT_EQ(WriteReadbackExr(path, readback, written.lights), absl::OkStatus());
+  const auto file = ReadReadbackExr(path, written.lights);
+  ASSERT_TRUE(file.ok()) << file.status();
+  EXPECT_EQ(file->facing_lights, 1U | 1U << 31);
+  EXPECT_EQ(file->mapped_lights, 1U << 7);
+  for (size_t i = 0; i < written.depth.size(); ++i) {
+    EXPECT_EQ(file->facing_bits[i], written.facing_bits[i] & (1U | 1U << 31));
+    EXPECT_EQ(file->mapped_bits[i], written.mapped_bits[i] & 1U << 7);
   }
 }
 

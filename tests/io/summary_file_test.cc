@@ -220,6 +220,8 @@ TEST(SummaryFile, OnlyLikeThingsAdd) {
           {"options.metric", "METRIC_L2 here", "METRIC_L1_ACROSS_EDGE"});
   refused([](SummarySet& set) { set.options.cover = Cover::kReceivers; },
           {"options.cover", "COVER_RECEIVERS", "COVER_SHADOWED"});
+  refused([](SummarySet& set) { set.options.border = BorderChoice::kDark; },
+          {"options.border", "BORDER_CHOICE_DARK", "BORDER_CHOICE_LIT"});
   refused([](SummarySet& set) { set.options.samples.min_cos_eye = 0.25; },
           {"options.samples.min_cos_eye", "0.25", "0.01"});
   refused([](SummarySet& set) { set.options.along_edge_share = 0.5; }, {"along_edge_share"});
@@ -300,6 +302,18 @@ TEST(SummaryFile, UnknownFieldsAreRefusedWhereverTheyAre) {
         StatusIs(absl::StatusCode::kInvalidArgument,
                  AllOf(HasSubstr("field 999"), HasSubstr(kWriter), HasSubstr("update lightfit"))));
   }
+}
+
+// Those from before there was a choice, when look-ups outside the map found light.
+TEST(SummaryFile, FilesWithoutABorderHaveALitOne) {
+  v1::SummaryFile proto = YardProto();
+  const absl::StatusOr<SummarySet> with = ParseSummarySet(FileAround(proto.SerializeAsString()));
+  ASSERT_THAT(with, IsOk());
+  proto.mutable_options()->clear_border();
+  const absl::StatusOr<SummarySet> without = ParseSummarySet(FileAround(proto.SerializeAsString()));
+  ASSERT_THAT(without, IsOk());
+  EXPECT_EQ(without->options.border, BorderChoice::kLit);
+  EXPECT_TRUE(BytesOf(*without) == BytesOf(*with));
 }
 
 // One change each to a good file, and the word of the field that is to be named.

@@ -39,6 +39,32 @@ def test_formats_of_pixels_give_the_same(client: Any, arguments: Any) -> None:
         assert client.fit(*pixels, camera, lights, MAP).message == want.message
 
 
+def test_facing_travels_in_every_form(client: Any, cast: lightfit.ExrReadback) -> None:
+    first = (cast.depth, cast.shadow, cast.camera, cast.lights)
+    assert cast.facing is not None
+    low, lamp = (numpy.asarray(plane) for plane in cast.facing)
+    bits = low.astype(numpy.uint32) | lamp.astype(numpy.uint32) << numpy.uint32(1)
+    options = {"border": "auto"}
+    forms = (bits, numpy.stack([low, lamp]), [low, lamp.astype(numpy.uint8) * 255])
+    want = lightfit.fit(*first, MAP, options=options, facing=cast.facing)
+    for facing in forms:
+        for calls in (lightfit, client):
+            result = calls.fit(*first, MAP, options=options, facing=facing)
+            assert result.message == want.message
+    partly = {"facing": [None, lamp], "mapped": [low, None]}
+    want = lightfit.fit(*first, MAP, options=options, **partly)
+    assert client.fit(*first, MAP, options=options, **partly).message == want.message
+    candidates = [
+        lightfit.Candidate.map(light.name, light.map_from_world, MAP)
+        for light in want.lights
+        if light.map_from_world is not None
+    ]
+    evaluated = lightfit.evaluate(*first, candidates, **partly)
+    assert client.evaluate(*first, candidates, **partly).message == evaluated.message
+    sizes = lightfit.allocate(*first, budget_texels=1 << 20, **partly)
+    assert client.allocate(*first, budget_texels=1 << 20, **partly).message == sizes.message
+
+
 @pytest.mark.parametrize("example", [YARD, ROOM])
 def test_files_are_fitted_as_in_this_process(client: Any, example: pathlib.Path) -> None:
     exr, lights = example / "0001.exr", example / "scene.json"
@@ -54,9 +80,11 @@ def test_large_readbacks_are_streamed(client: Any, has_planes: bool) -> None:
     want = lightfit.fit(depth, shadow, camera, lights, MAP)
     assert want.ok
     assert client.fit(depth, shadow, camera, lights, MAP).message == want.message
+    facing = [depth < 19, None, depth < 18]
     with lightfit.track(MAP) as here, client.track(MAP) as there:
-        expected = here.update(1, depth, shadow, camera, lights)
-        assert there.update(1, depth, shadow, camera, lights).message == expected.message
+        expected = here.update(1, depth, shadow, camera, lights, facing=facing)
+        answer = there.update(1, depth, shadow, camera, lights, facing=facing)
+        assert answer.message == expected.message
 
 
 def test_a_light_that_cannot_be_used_fails_alone(client: Any, arguments: Any) -> None:

@@ -33,10 +33,13 @@ def run_lightfit() -> Callable[..., "subprocess.CompletedProcess[str]"]:
 def fit_by_program(
     tmp_path: pathlib.Path, run_lightfit: Any
 ) -> Callable[..., result_pb2.FitResult]:
-    """What `lightfit fit` writes, without the yardsticks that the calls do not compute."""
+    """What `lightfit fit` writes, without the yardsticks that the calls do not compute; with the
+    border that they have where none is given."""
 
     def fit(*arguments: Any) -> result_pb2.FitResult:
         path = tmp_path / "fit.json"
+        if "--border" not in arguments:
+            arguments += ("--border", "lit")
         done = run_lightfit("fit", *arguments, "--map", "1024x1024", "--json", path, "--quiet")
         assert path.exists(), done.stderr
         result = json_format.Parse(path.read_text(), result_pb2.FitResult())
@@ -64,6 +67,22 @@ def without_yardsticks(light: result_pb2.LightResult) -> None:
 def yard() -> lightfit.ExrReadback:
     pytest.importorskip("lightfit._native")
     return lightfit.read_exr(YARD / "0001.exr", YARD / "scene.json")
+
+
+@pytest.fixture(scope="session")
+def cast(tmp_path_factory: pytest.TempPathFactory) -> lightfit.ExrReadback:
+    """A read-back by `lightfit render`, which knows what faces its lights."""
+    pytest.importorskip("lightfit._native")
+    folder = tmp_path_factory.mktemp("cast")
+    exr, lights = folder / "a.exr", folder / "a.json"
+    done = subprocess.run(
+        [program(), "render", "generate:objects=10,triangles=3000", "--camera",
+         "0,1.7,18:0,0.5,0", "--light", "low=sun:1,-0.6,0.3", "--light", "lamp=point:-4,6,5",
+         "--size", "120x80", "-o", str(exr), "--lights-out", str(lights), "--quiet"],
+        capture_output=True, text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    return lightfit.read_exr(exr, lights)
 
 
 @pytest.fixture(scope="session")

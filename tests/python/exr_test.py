@@ -23,6 +23,47 @@ def test_the_arrays_of_a_file(yard: lightfit.ExrReadback) -> None:
     assert numpy.median(yard.depth[yard.depth < 1e9]) > 0
 
 
+def test_a_file_may_say_what_faces_its_lights(
+    yard: lightfit.ExrReadback, cast: lightfit.ExrReadback
+) -> None:
+    assert yard.facing is None and yard.mapped is None and cast.mapped is None
+    assert cast.facing is not None and len(cast.facing) == 2
+    for light, plane in enumerate(cast.facing):
+        assert plane is not None and plane.shape == cast.depth.shape
+        assert plane.dtype == numpy.bool_ and 0 < plane.mean() < 1
+        blocked = (cast.shadow >> numpy.uint32(light)) & 1 == 1
+        assert blocked.any() and plane[blocked].all()  # what is blocked faces the light
+        assert not plane[cast.depth > 1e9].any()
+
+
+def test_facing_and_mapped_channels_may_be_named(cast: lightfit.ExrReadback) -> None:
+    low = light_pb2.Light(name="low", direction=cast.lights[0].direction)
+    moon = light_pb2.Light(name="moon", direction=cast.lights[0].direction)
+    named = lightfit.read_exr(
+        cast.path, [moon, low], facing_channel="shadow.{light}", mapped_channel="facing.{light}"
+    )
+    assert named.facing is not None and named.mapped is not None
+    assert named.facing[0] is None and named.mapped[0] is None
+    assert named.light_status[0].code != 0  # it has no shadow either
+    assert cast.facing is not None
+    assert numpy.array_equal(named.facing[1], (cast.shadow & 1) == 1)
+    assert numpy.array_equal(named.mapped[1], cast.facing[0])
+    with pytest.raises(lightfit.InvalidArgumentError, match="facing_channel_format = \"x\""):
+        lightfit.read_exr(cast.path, [low], facing_channel="x")
+
+
+@pytest.mark.parametrize("border", ["lit", "dark", "auto"])
+def test_every_border_is_that_of_the_program(
+    fit_by_program: Any, cast: lightfit.ExrReadback, border: str
+) -> None:
+    lights = str(pathlib.Path(cast.path).with_suffix(".json"))
+    want = fit_by_program(cast.path, "--lights", lights, "--border", border)
+    options = {"border": border}
+    result = lightfit.fit_exr(cast.path, lights, MAP, options=options, foretell_wrong=True)
+    assert result.message == want
+    assert {light.border for light in result.lights if light.ok} <= {"lit", "dark"}
+
+
 @pytest.mark.parametrize("example", [YARD, ROOM])
 def test_a_file_is_fitted_as_by_the_program(fit_by_program: Any, example: pathlib.Path) -> None:
     exr, lights = example / "0001.exr", example / "scene.json"

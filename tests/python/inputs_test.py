@@ -125,13 +125,14 @@ def test_map_sizes_that_are_none_are_refused(size: Any) -> None:
 def test_options_may_be_short_words() -> None:
     options = options_message(
         {"search": "focused", "metric": "METRIC_L2", "ray_space": "light-space",
-         "margin_texels": 2, "samples": {"min_samples": 3}}
+         "margin_texels": 2, "samples": {"min_samples": 3}, "border": "auto"}
     )
     assert options == options_pb2.FitOptions(
         search=options_pb2.SEARCH_FOCUSED,  # type: ignore[arg-type]
         metric=options_pb2.METRIC_L2,  # type: ignore[arg-type]
         ray_space=options_pb2.RAY_SPACE_LIGHT_SPACE,  # type: ignore[arg-type]
         margin_texels=2,
+        border=options_pb2.BORDER_CHOICE_AUTOMATIC,  # type: ignore[arg-type]
         samples=options_pb2.SampleOptions(min_samples=3),
     )
     assert options_message(None) is None
@@ -142,6 +143,7 @@ def test_options_may_be_short_words() -> None:
     [
         ({"serch": "focused"}, 'options: .*"serch"'),
         ({"search": "nowhere"}, "options: .*nowhere"),
+        ({"border": "red"}, "options: .*red"),
         ({"margin_texels": "two"}, "options: .*two"),
         ("focused", "options: is a str, want a dict"),
     ],

@@ -51,6 +51,30 @@ def test_shadows_that_are_none_are_refused(shadow: Any, words: str) -> None:
         check_pixels(DEPTH, shadow, 2)
 
 
+@pytest.mark.parametrize(
+    "facing, words",
+    [
+        (BITS.T, r"facing: has shape \(4, 3\), want that of depth, \(3, 4\)"),
+        (numpy.zeros((2, 3, 4)), r"facing: has dtype float64.*faces the light: facing > 0.5"),
+        ([None], "facing: has 1 planes, want 2, one per light, None where it is not known"),
+        ([None, BITS.T > 0], r"facing\[1\]: has shape \(4, 3\), want that of depth"),
+        ([DEPTH, None], r"facing\[0\]: has dtype float32.*faces the light: facing\[0\] > 0.5"),
+        ([None, "lamp"], r"facing\[1\]: is a str, want a numpy array"),
+        ("bits", "facing: is a str"),
+    ],
+)
+def test_facing_that_is_none_is_refused(facing: Any, words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        check_pixels(DEPTH, BITS, 2, facing=facing)
+    with pytest.raises(ValueError, match=words.replace("facing", "mapped", 1).split(".*")[0]):
+        check_pixels(DEPTH, BITS, 2, mapped=facing)
+
+
+def test_facing_that_is_known_of_no_light_is_absent() -> None:
+    pixels = check_pixels(DEPTH, BITS, 2, facing=[None, None])
+    assert pixels.facing is None and pixels.optional_bits() == (None, None)
+
+
 def test_pixels_that_fit_are_not_copied() -> None:
     pixels = check_pixels(DEPTH, BITS, 1)
     depth, bits = pixels.as_floats_and_bits()
@@ -97,22 +121,27 @@ def test_chunks_are_the_message_in_pieces(dtype: Any, has_planes: bool) -> None:
         if has_planes
         else generator.integers(0, 2**32, (height, width), numpy.uint32)
     )
-    pixels = check_pixels(depth, shadow, 3)
+    facing = random_planes(3, height, width)
+    mapped = [None, facing[1] >= 99, None]
+    pixels = check_pixels(depth, shadow, 3, facing if has_planes else shadow + 1, mapped)
     whole = pixels.header()
     pixels.fill(whole)
-    joined = readback_pb2.Readback(
-        depth_format=whole.depth_format, shadow_format=whole.shadow_format
-    )
-    planes = [b""] * 3
+    assert (whole.facing_lights, whole.mapped_lights) == (0, 2)
+    joined = pixels.header()
+    planes = {kind: [b""] * 3 for kind in ("shadow", "facing", "mapped")}
+    num_bytes = 0
     for chunk in pixels.chunks():
-        size = len(chunk.depth) + len(chunk.shadow_bits) + len(chunk.shadow_plane)
-        assert 0 < size <= CHUNK_BYTES
+        size = len(chunk.depth)
         joined.depth += chunk.depth
-        joined.shadow_bits += chunk.shadow_bits
-        planes[chunk.shadow_plane_index] += chunk.shadow_plane
-    if has_planes:
-        joined.shadow_planes.extend(planes)
+        for kind in planes:
+            bits, plane = getattr(chunk, f"{kind}_bits"), getattr(chunk, f"{kind}_plane")
+            setattr(joined, f"{kind}_bits", getattr(joined, f"{kind}_bits") + bits)
+            planes[kind][getattr(chunk, f"{kind}_plane_index")] += plane
+            size += len(bits) + len(plane)
+        assert 0 < size <= CHUNK_BYTES
+        num_bytes += size
+    for kind in planes:
+        if any(planes[kind]):
+            getattr(joined, f"{kind}_planes").extend(planes[kind])
     assert joined == whole
-    assert pixels.num_bytes == len(whole.depth) + len(whole.shadow_bits) + sum(
-        map(len, whole.shadow_planes)
-    )
+    assert pixels.num_bytes == num_bytes

@@ -4,7 +4,7 @@ import numpy
 import pytest
 
 import lightfit
-from lightfit.v1 import allocation_pb2, result_pb2, shot_pb2
+from lightfit.v1 import allocation_pb2, matrix_pb2, result_pb2, shot_pb2
 
 
 def message() -> result_pb2.FitResult:
@@ -14,6 +14,8 @@ def message() -> result_pb2.FitResult:
     sun.map.width, sun.map.height = 64, 32
     sun.map_from_world.m.extend(range(16))
     sun.clip_from_world.m.extend(range(16, 32))
+    sun.border = matrix_pb2.BORDER_DARK  # type: ignore[assignment]
+    sun.facing = result_pb2.FACING_SOURCE_GIVEN  # type: ignore[assignment]
     sun.energies.final = 2.5
     sun.footprint.rms = 1.5
     sun.samples.used = 9
@@ -33,6 +35,7 @@ def test_a_light_has_matrices_and_figures() -> None:
     assert (light.energy, light.evaluations, light.stop_reason) == (2.5, 7, "CONVERGED")
     assert light.footprint == lightfit.Footprint(1.5, None, None, None)
     assert light.samples is not None and light.samples.used == 9
+    assert (light.border, light.facing) == ("dark", "given")
     assert light.foretold_wrong is None and light.action is None and light.frames_kept is None
 
 
@@ -46,6 +49,7 @@ def test_a_light_that_failed_has_its_status_alone() -> None:
     )
     assert light.map_from_world is None and light.clip_from_world is None
     assert light.energy is None and light.footprint is None and light.samples is None
+    assert light.border is None and light.facing is None
     with pytest.raises(lightfit.FailedPreconditionError, match='^light "key": receivers surround'):
         result.raise_for_status()
 

@@ -43,11 +43,11 @@ TEST(MemoryBudget, AMovedReservationGivesBackOnce) {
   ASSERT_TRUE(a.has_value() && b.has_value());
   *a = *std::move(b);  // gives back the 30
   EXPECT_EQ(budget.used_bytes(), 20);
-  EXPECT_EQ(b->bytes(), 0);
+  EXPECT_EQ(b->bytes(), 0);  // NOLINT(bugprone-use-after-move): what is left is what is tested
   b.reset();
   EXPECT_EQ(budget.used_bytes(), 20);
   MemoryBudget::Reservation c = *std::move(a);
-  a.reset();
+  a.reset();  // NOLINT(bugprone-use-after-move)
   EXPECT_EQ(budget.used_bytes(), 20);
   c.Release();
   c.Release();

@@ -112,7 +112,7 @@ TEST(Metrics, NothingIsLostWithManyThreads) {
     }
   }
   const std::string text = metrics.Text();
-  const double half = kNumThreads * kNumCalls / 2;
+  const double half = 0.5 * kNumThreads * kNumCalls;
   EXPECT_EQ(Value(text, "lightfit_calls_total{code=\"OK\",method=\"Fit\"}"), half);
   EXPECT_EQ(Value(text, "lightfit_calls_total{code=\"CANCELLED\",method=\"Fit\"}"), half);
   EXPECT_EQ(Value(text, "lightfit_calls_in_flight{method=\"Fit\"}"), 0);

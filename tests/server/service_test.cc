@@ -8,6 +8,7 @@
 #include "calls/allocate_call.h"
 #include "calls/evaluate_call.h"
 #include "calls/fit_call.h"
+#include "calls/pixel_buffer.h"
 #include "calls/summary_call.h"
 #include "calls/track_session.h"
 #include "tests/server/test_server.h"
@@ -56,6 +57,35 @@ TEST(Service, FitStreamGivesTheSameAsFit) {
     ExpectOk(FitInStream(server.stub(), request, chunk_bytes, &context, &result));
     ExpectSame(result, AnswerFit(request, CallContext()));
   }
+}
+
+TEST(Service, FacingPlanesComeWholeOrInChunks) {
+  TestServer server;
+  v1::FitRequest request = YardFitRequest();
+  *request.mutable_readback() =
+      testing::WithFacingPlanes(request.readback(), request.lights_size());
+  const absl::StatusOr<v1::FitResult> want = AnswerFit(request, CallContext());
+  {
+    grpc::ClientContext context;
+    v1::FitResult result;
+    ExpectOk(server.stub().Fit(&context, request, &result));
+    ExpectSame(result, want);
+  }
+  for (const size_t chunk_bytes : {size_t{4000}, size_t{1} << 20}) {
+    grpc::ClientContext context;
+    v1::FitResult result;
+    ExpectOk(FitInStream(server.stub(), request, chunk_bytes, &context, &result));
+    ExpectSame(result, want);
+  }
+  request.mutable_readback()->mutable_facing_planes(2)->pop_back();
+  grpc::ClientContext whole, stream;
+  v1::FitResult result;
+  const std::string words = "readback.facing_planes[2]: 32399 bytes, want 32400";
+  ExpectRefused(
+      server.stub().Fit(&whole, request, &result), grpc::StatusCode::INVALID_ARGUMENT, words);
+  ExpectRefused(FitInStream(server.stub(), request, 4000, &stream, &result),
+                grpc::StatusCode::INVALID_ARGUMENT,
+                words);
 }
 
 TEST(Service, FitSummaryTakesMessagesAndFiles) {
@@ -119,6 +149,9 @@ TEST(Service, TrackAnswersFrameByFrame) {
     const ReadbackFile file = testing::FrameOfYard(f);
     auto frame = testing::RequestOf<v1::TrackFrame>(file.View(), Yard().lights);
     frame.set_number(f);
+    if (f == 1) {
+      *frame.mutable_readback() = testing::WithFacingPlanes(frame.readback(), frame.lights_size());
+    }
     if (f == 2) frame.mutable_readback()->mutable_camera()->set_width(0);
     const v1::Readback whole = frame.readback();
     if (f == 1 || f == 2) *frame.mutable_readback() = testing::WithoutPixels(whole);
@@ -140,8 +173,10 @@ TEST(Service, TrackAnswersFrameByFrame) {
       EXPECT_THAT(result.status().message(), HasSubstr("readback.camera"));
       continue;
     }
+    const auto view = ReadbackView::Of(whole, frame.lights_size(), CallLimits());
+    ASSERT_THAT(view, testing::IsOk());
     EXPECT_EQ(result.SerializeAsString(),
-              session->Update(frame, file.View(), {}).SerializeAsString());
+              session->Update(frame, view->view(), {}).SerializeAsString());
   }
   stream->WritesDone();
   v1::TrackResult more;

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "calls/pixel_buffer.h"
 #include "lightfit/v1/service.grpc.pb.h"
 #include "server/server.h"
 #include "tests/calls/requests.h"
@@ -58,6 +59,17 @@ Request WithMap(Request request) {
   return request;
 }
 
+// Where the plane of every other light, as shadows do, says something; it is made up.
+inline v1::Readback WithFacingPlanes(v1::Readback readback, int num_lights) {
+  const size_t num_pixels = readback.depth().size() / 4;
+  for (int light = 0; light < num_lights; ++light) {
+    std::string* plane = readback.add_facing_planes();
+    if (light % 2 == 0) plane->assign(num_pixels - num_pixels / 3, '\xff');
+    if (light % 2 == 0) plane->resize(num_pixels, '\0');
+  }
+  return readback;
+}
+
 inline v1::FitRequest YardFitRequest() {
   return WithMap(RequestOf<v1::FitRequest>(Yard().file.View(), Yard().lights));
 }
@@ -87,12 +99,27 @@ inline std::vector<v1::PixelChunk> Chunks(const v1::Readback& readback, size_t c
   for (size_t at = 0; at < readback.shadow_bits().size(); at += chunk_bytes) {
     chunks.emplace_back().set_shadow_bits(readback.shadow_bits().substr(at, chunk_bytes));
   }
+  for (int light = 0; light < readback.facing_planes_size(); ++light) {
+    const std::string& plane = readback.facing_planes(light);
+    for (size_t at = 0; at < plane.size(); at += chunk_bytes) {
+      chunks.emplace_back().set_facing_plane(plane.substr(at, chunk_bytes));
+      chunks.back().set_facing_plane_index(light);
+    }
+  }
   return chunks;
 }
 
+// Says of facing planes that they follow, and of which lights.
 inline v1::Readback WithoutPixels(v1::Readback readback) {
-  readback.clear_depth();
-  readback.clear_shadow_bits();
+  uint32_t lights = 0;
+  for (int light = 0; light < readback.facing_planes_size(); ++light) {
+    if (!readback.facing_planes(light).empty()) lights |= uint32_t{1} << light;
+  }
+  if (lights != 0) {
+    readback.set_facing_format(v1::SHADOW_FORMAT_PLANES);
+    readback.set_facing_lights(lights);
+  }
+  ClearPixels(&readback);
   return readback;
 }
 

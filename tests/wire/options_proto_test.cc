@@ -34,6 +34,7 @@ FitOptions OtherOptions() {
   options.samples.edge_window = 3;
   options.metric = Metric::kL2AcrossEdge;
   options.cover = Cover::kReceivers;
+  options.border = BorderChoice::kAutomatic;
   options.search = Search::kRotationLineSearch;
   options.affine = Affine::kSkewedRectangle;
   options.ray_space = RaySpace::kLightSpace;
@@ -47,6 +48,7 @@ FitOptions OtherOptions() {
   options.grid_directions = 5;
   options.sample_by_sample = true;
   options.compute_statistics = false;
+  options.use_fine_cover = false;
   return options;
 }
 
@@ -99,6 +101,22 @@ TEST(OptionsProto, EveryWordComesBack) {
   }
 }
 
+TEST(OptionsProto, EveryBorderComesBack) {
+  for (const BorderChoice border :
+       {BorderChoice::kLit, BorderChoice::kDark, BorderChoice::kAutomatic}) {
+    FitOptions options;
+    options.border = border;
+    const absl::StatusOr<FitOptions> back = FitOptionsFromProto(FitOptionsToProto(options));
+    ASSERT_THAT(back, IsOk());
+    EXPECT_EQ(back->border, border);
+  }
+}
+
+// Who does not look at a result's border must find light outside the map.
+TEST(OptionsProto, AnAbsentBorderIsLit) {
+  EXPECT_EQ(FitOptionsFromProto({})->border, BorderChoice::kLit);
+}
+
 TEST(OptionsProto, WhatIsAbsentHasItsDefault) {
   const absl::StatusOr<FitOptions> options = FitOptionsFromProto({});
   ASSERT_THAT(options, IsOk());
@@ -116,6 +134,8 @@ TEST(OptionsProto, UnknownWordsAndWrongValuesAreNamed) {
   refused([](v1::FitOptions& p) { p.set_metric(static_cast<v1::Metric>(17)); },
           "options.metric = 17, want one of METRIC_L2, ");
   refused([](v1::FitOptions& p) { p.set_cover(static_cast<v1::Cover>(-1)); }, "options.cover = -1");
+  refused([](v1::FitOptions& p) { p.set_border(static_cast<v1::BorderChoice>(4)); },
+          "options.border = 4, want one of BORDER_CHOICE_LIT, ");
   refused([](v1::FitOptions& p) { p.set_search(static_cast<v1::Search>(9)); }, "SEARCH_GLOBAL");
   refused([](v1::FitOptions& p) { p.set_affine(static_cast<v1::Affine>(9)); }, "options.affine");
   refused([](v1::FitOptions& p) { p.set_ray_space(static_cast<v1::RaySpace>(9)); }, "ray_space");

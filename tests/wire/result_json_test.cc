@@ -17,6 +17,8 @@ LightMatrix SomeMatrix() {
   LightMatrix matrix;
   matrix.light_name = "sun";
   matrix.map = {1024, 512};
+  matrix.border = Border::kDark;
+  matrix.facing = FacingSource::kGiven;
   matrix.map_from_world << 100.0, 1.0, 2.0, 3.0,  //
       4.0, 50.0, 6.0, 7.0,                        //
       0.01, 0.02, 0.03, 0.5,                      //
@@ -59,6 +61,8 @@ TEST(FitResult, HoldsEveryFigureOfAMatrix) {
   EXPECT_EQ(sun.status().code(), 0);
   EXPECT_EQ(sun.map().width(), 1024);
   EXPECT_EQ(sun.map().height(), 512);
+  EXPECT_EQ(sun.border(), v1::BORDER_DARK);
+  EXPECT_EQ(sun.facing(), v1::FACING_SOURCE_GIVEN);
   EXPECT_EQ(sun.map_from_world().m(1), 1.0);  // row-major
   EXPECT_EQ(sun.map_from_world().m(4), 4.0);
   EXPECT_EQ(sun.energies().final(), 12.5);

@@ -46,7 +46,7 @@ TEST(ShotProto, StatesReadBackExactly) {
   v1::ShotInfo shot;
   std::vector<TrackedState> states;
   for (const Light& light : lights) {
-    TrackedState state = {light, {64, 32}, Eigen::Matrix4d::Zero(), 17, 2};
+    TrackedState state = {light, {64, 32}, Border::kDark, Eigen::Matrix4d::Zero(), 17, 2};
     for (int i = 0; i < 16; ++i) state.map_from_world(i) = -std::pow(10.0, exponent(random));
     *shot.add_tracker_state() = TrackedStateToProto(state);
     states.push_back(state);

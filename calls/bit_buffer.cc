@@ -1,0 +1,142 @@
+#include "calls/bit_buffer.h"
+
+#include <cstring>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+
+namespace lightfit {
+namespace {
+
+constexpr uint8_t kLeastSet = 128;  // of a plane's values
+
+std::string BitsField(const BitsHeader& header) {
+  return absl::StrCat("readback.", header.name, "_bits");
+}
+
+std::string PlaneField(const BitsHeader& header, int plane) {
+  return absl::StrFormat("readback.%s_planes[%d]", header.name, plane);
+}
+
+absl::Status Unannounced(const BitsHeader& header, const char* kind, const char* format) {
+  return absl::InvalidArgumentError(
+      absl::StrFormat("readback.%s_%s: has pixels, but readback.%s_format says none; want "
+                      "%s before %s in chunks",
+                      header.name,
+                      kind,
+                      header.name,
+                      format,
+                      kind));
+}
+
+}  // namespace
+
+absl::Status CheckPiece(absl::string_view field,
+                        absl::string_view bytes,
+                        int64_t value_bytes,
+                        int64_t arrived,
+                        int64_t want) {
+  const int64_t size = static_cast<int64_t>(bytes.size());
+  if (size % value_bytes != 0) {
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "%s: %d bytes, want whole values of %d bytes each", field, size, value_bytes));
+  }
+  if (size > want - arrived) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("%s: %d bytes, want %d: width * height values of %d bytes, as in "
+                        "readback.camera and the formats",
+                        field,
+                        arrived + size,
+                        want,
+                        value_bytes));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status CheckArrived(absl::string_view field, int64_t arrived, int64_t want) {
+  if (arrived == want) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrFormat("%s: %d bytes, want %d: width * height values as in readback.camera and the "
+                      "formats",
+                      field,
+                      arrived,
+                      want));
+}
+
+absl::Status BitBuffer::AppendBits(absl::string_view bytes) {
+  if (bytes.empty()) return absl::OkStatus();
+  if (header_.is_absent()) return Unannounced(header_, "bits", "SHADOW_FORMAT_BITS");
+  if (!header_.has_bits()) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("readback.%s_bits: has pixels beside readback.%s_planes, want one of them",
+                        header_.name,
+                        header_.name));
+  }
+  absl::Status status = CheckPiece(
+      BitsField(header_), bytes, sizeof(uint32_t), num_bits_bytes_, header_.bits_bytes());
+  if (!status.ok()) return status;
+  num_bits_bytes_ += static_cast<int64_t>(bytes.size());
+  words_.reserve(header_.num_pixels);
+  const size_t first = words_.size();
+  words_.resize(first + bytes.size() / sizeof(uint32_t));
+  std::memcpy(words_.data() + first, bytes.data(), bytes.size());
+  return absl::OkStatus();
+}
+
+absl::Status BitBuffer::AppendPlane(int plane, absl::string_view bytes) {
+  if (header_.is_absent()) {
+    return bytes.empty() ? absl::OkStatus()
+                         : Unannounced(header_, "planes", "SHADOW_FORMAT_PLANES");
+  }
+  if (header_.has_bits()) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("readback.%s_planes: has pixels, but readback.%s_format says bits; want "
+                        "SHADOW_FORMAT_PLANES before planes in chunks",
+                        header_.name,
+                        header_.name));
+  }
+  if (plane < 0 || plane >= header_.num_lights) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("%s plane %d: there are %d lights, want one plane for each, counted "
+                        "from 0",
+                        header_.name,
+                        plane,
+                        header_.num_lights));
+  }
+  if (bytes.empty()) return absl::OkStatus();
+  const uint32_t bit = uint32_t{1} << plane;
+  if ((header_.lights & bit) == 0) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("%s: has pixels, but readback.%s_lights = %#x says that it is not known",
+                        PlaneField(header_, plane),
+                        header_.name,
+                        header_.lights));
+  }
+  int64_t& arrived = num_plane_bytes_[plane];
+  absl::Status status =
+      CheckPiece(PlaneField(header_, plane), bytes, 1, arrived, header_.plane_bytes());
+  if (!status.ok()) return status;
+  words_.resize(header_.num_pixels);
+  uint32_t* const words = words_.data() + arrived;
+  for (size_t i = 0; i < bytes.size(); ++i) {
+    if (static_cast<uint8_t>(bytes[i]) >= kLeastSet) words[i] |= bit;
+  }
+  arrived += static_cast<int64_t>(bytes.size());
+  return absl::OkStatus();
+}
+
+absl::Status BitBuffer::CheckComplete() const {
+  if (header_.is_absent()) return absl::OkStatus();
+  if (header_.has_bits()) {
+    return CheckArrived(BitsField(header_), num_bits_bytes_, header_.bits_bytes());
+  }
+  for (int plane = 0; plane < header_.num_lights; ++plane) {
+    if ((header_.lights >> plane & 1u) == 0) continue;
+    absl::Status status =
+        CheckArrived(PlaneField(header_, plane), num_plane_bytes_[plane], header_.plane_bytes());
+    if (!status.ok()) return status;
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace lightfit
