@@ -93,6 +93,7 @@ CompareHeading HeadingOf(const CompareInputs& inputs) {
   heading.readback_width = inputs.stage.readback.width();
   heading.readback_height = inputs.stage.readback.height();
   heading.map = inputs.options.map;
+  heading.phases = inputs.options.judge.phases;
   heading.fit = MethodText(inputs.options.fit);
   heading.next = inputs.next_title;
   return heading;
@@ -115,7 +116,8 @@ absl::Status WritePicture(const CompareFlags& flags,
   options.keep_images = true;
   options.next = nullptr;
   const LightComparison comparison = CompareMaps(inputs.stage, inputs.lights[light], options);
-  const ComparePictureOptions picture = {inputs.title, options.map, flags.picture_bias};
+  const ComparePictureOptions picture = {
+      inputs.title, options.map, options.judge.phases, flags.picture_bias};
   return WritePng(DrawComparePicture(inputs.stage, comparison, picture, typeface),
                   flags.picture_path);
 }

@@ -176,7 +176,7 @@ absl::StatusOr<CompareInputs> ReadCompareInputs(const CompareFlags& flags) {
   CompareInputs inputs;
   inputs.options.map = flags.map;
   inputs.options.fit = flags.fit.options;
-  inputs.options.bias = flags.bias;
+  inputs.options.judge = flags.judge;
   for (const MatrixFlag& matrix : flags.matrices) {
     absl::StatusOr<GivenMatrices> given = ReadGivenMatrices(matrix.name, matrix.path, flags.map);
     if (!given.ok()) return given.status();

@@ -46,6 +46,15 @@ void WarnAboutPixels(const std::vector<FitComparison>& comparisons) {
   }
 }
 
+// What is no error, but less than was asked for.
+void PrintNotes(const std::vector<FitComparison>& comparisons, const FitOptions& options) {
+  for (const FitComparison& comparison : comparisons) {
+    if (!comparison.final.ok()) continue;
+    const std::string text = FocusedInsteadText(comparison.final->matrix, options);
+    if (!text.empty()) PrintWarning(text);
+  }
+}
+
 // Names the lights without a matrix on stderr and returns how many there are.
 int PrintFailedLights(const std::vector<FitComparison>& comparisons) {
   int num_failed = 0;
@@ -109,7 +118,7 @@ Outcome FitAndDraw(const FitFlags& flags, const FitOptions& options, const FitIn
   }
   Progress progress(static_cast<int>(inputs.lights.size()) + (draws ? 1 : 0), flags.quiet);
   bool is_first = true;
-  ComparedReadback compared = CompareLights(inputs.file.View(),
+  ComparedReadback compared = CompareLights(inputs.View(),
                                             inputs.lights,
                                             inputs.file.light_status,
                                             flags.map,
@@ -156,7 +165,8 @@ std::function<int()> DeclareFit(CLI::App* app) {
 }
 
 int RunFit(const FitFlags& flags) {
-  const FitOptions options = flags.as_published ? PublishedOptions(flags.options) : flags.options;
+  const FitOptions options =
+      flags.as_published ? FitOptions::AsPublished(flags.options) : flags.options;
   absl::Status status = ValidateFitOptions(options);
   if (!status.ok()) return Fail(kExitUsage, status);
   status = CheckOutputs(flags);
@@ -166,12 +176,13 @@ int RunFit(const FitFlags& flags) {
 
   const Outcome outcome = FitAndDraw(flags, options, *inputs);
   if (!flags.quiet) {
-    const std::string text = FitReportText(
-        flags.readback_path, inputs->file.View(), flags.map, options, outcome.comparisons);
+    const std::string text =
+        FitReportText(flags.readback_path, inputs->View(), flags.map, options, outcome.comparisons);
     std::fputs(text.c_str(), stdout);
     std::fflush(stdout);
   }
   WarnAboutPixels(outcome.comparisons);
+  PrintNotes(outcome.comparisons, options);
   const int num_failed = PrintFailedLights(outcome.comparisons);
   status = WriteOutputs(flags, options, inputs->file, outcome);
   if (!status.ok()) return Fail(kExitBadInput, status);

@@ -133,9 +133,11 @@ int RunFitSummary(const FitFlags& flags) {
     if (!fit.matrix.ok()) {
       ++num_failed;
       PrintError(absl::StrCat("no matrix for ", fit.matrix.status().message()));
-    } else if (fit.light->num_frames_without > 0) {
-      PrintWarning(MissingFramesText(*fit.light));
+      continue;
     }
+    if (fit.light->num_frames_without > 0) PrintWarning(MissingFramesText(*fit.light));
+    const std::string text = FocusedInsteadText(*fit.matrix, *options);
+    if (!text.empty()) PrintWarning(text);
   }
   if (!flags.json_path.empty()) {
     absl::Status status = WriteJson(flags, *options, fits);

@@ -19,6 +19,7 @@
 #include "cli/serve.h"
 #include "cli/shot.h"
 #include "cli/summarize.h"
+#include "cli/tune.h"
 #include "cli/verb.h"
 
 namespace lightfit::cli {
@@ -38,6 +39,9 @@ constexpr Verb kVerbs[] = {
     {"summarize",
      "Sum up read-backs in small files, for one fit to all (fit --summary)",
      DeclareSummarize},
+    {"tune",
+     "Search a scene for the matrices of fewest wrong pixels, and say how far the fits were",
+     DeclareTune},
 };
 
 constexpr char kFooter[] =

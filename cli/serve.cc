@@ -184,7 +184,7 @@ void RaiseFileLimit() {
 // keep them, in a heap for each of gRPC's threads, and --memory-mib would not be all they take.
 void ReturnLargeMemory() {
   constexpr int kLargeBytes = 4 << 20;
-  mallopt(M_MMAP_THRESHOLD, kLargeBytes);
+  mallopt(M_MMAP_THRESHOLD, kLargeBytes);  // NOLINT(concurrency-mt-unsafe): no thread yet
 }
 
 }  // namespace

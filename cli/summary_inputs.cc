@@ -43,12 +43,13 @@ absl::StatusOr<SummarySet> ReadSummaries(const std::vector<std::string>& paths,
 absl::Status CheckHeld(const FitFlags& flags, const FitOptions& held) {
   const auto refuse = [&held](const char* flag, const std::string& given) {
     return absl::InvalidArgumentError(
-        absl::StrFormat("%s %s: the summaries hold sums for --metric %s and --cover %s; leave it "
-                        "out, or summarise the frames again with it",
+        absl::StrFormat("%s %s: the summaries hold sums for --metric %s, --cover %s and --border "
+                        "%s; leave it out, or summarise the frames again with it",
                         flag,
                         given,
                         WordFor(MetricWords(), held.metric),
-                        WordFor(CoverWords(), held.cover)));
+                        WordFor(CoverWords(), held.cover),
+                        WordFor(BorderWords(), held.border)));
   };
   const FitOptions& options = flags.options;
   if (flags.has_metric && options.metric != held.metric) {
@@ -56,6 +57,9 @@ absl::Status CheckHeld(const FitFlags& flags, const FitOptions& held) {
   }
   if (flags.has_cover && options.cover != held.cover) {
     return refuse("--cover", WordFor(CoverWords(), options.cover));
+  }
+  if (flags.has_border && options.border != held.border) {
+    return refuse("--border", WordFor(BorderWords(), options.border));
   }
   return absl::OkStatus();
 }

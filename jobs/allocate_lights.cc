@@ -28,8 +28,12 @@ void AddLight(const AllocationTask& task,
   fit.light = light;
   fit.matrix = std::move(matrix);
   if (!fit.matrix.ok() || surfaces == nullptr) return;
-  const absl::StatusOr<double> wrong_share = ForetellWrongShare(
-      surfaces->readback, light, fit.matrix->map_from_world, fit.matrix->map, task.options.samples);
+  const absl::StatusOr<double> wrong_share = ForetellWrongShare(surfaces->readback,
+                                                                light,
+                                                                fit.matrix->map_from_world,
+                                                                fit.matrix->map,
+                                                                task.options.samples,
+                                                                fit.matrix->border);
   if (wrong_share.ok()) fit.wrong_share = *wrong_share;
 }
 

@@ -11,30 +11,23 @@ namespace lightfit {
 
 namespace {
 
-absl::StatusOr<LightMatrix> FitOne(const Surfaces& surfaces,
-                                   const Light& light,
-                                   MapSize map,
-                                   const FitOptions& options) {
-  const absl::StatusOr<LightView> view = ViewLight(surfaces, light, options);
-  if (!view.ok()) return view.status();
-  return FitLight(*view, map, options);
-}
-
-// Judges matrices of one light.
+// Judges matrices of one light, whatever their borders, over the edges that a map with this one
+// serves.
 class Judge {
  public:
   static absl::StatusOr<Judge> Of(const Surfaces& surfaces,
                                   const Light& light,
+                                  Border border,
                                   const FitOptions& options) {
     Judge judge;
     judge.options_ = FigureOptions(options);
     judge.own_options_ = judge.options_;
     judge.own_options_.samples = options.samples;
-    absl::StatusOr<LightView> view = ViewLight(surfaces, light, judge.options_);
+    absl::StatusOr<LightView> view = ViewLight(surfaces, light, border, judge.options_);
     if (!view.ok()) return view.status();
     judge.view_ = *std::move(view);
     if (options.samples == judge.options_.samples) return judge;
-    view = ViewLight(surfaces, light, judge.own_options_);
+    view = ViewLight(surfaces, light, border, judge.own_options_);
     if (!view.ok()) return view.status();
     judge.own_view_ = *std::move(view);
     return judge;
@@ -43,11 +36,12 @@ class Judge {
   absl::StatusOr<JudgedMatrix> operator()(absl::StatusOr<LightMatrix> matrix) const {
     if (!matrix.ok()) return matrix.status();
     absl::StatusOr<Figures> figures =
-        EvaluateMatrix(*view_, matrix->map_from_world, matrix->map, options_);
+        EvaluateMatrix(*view_, matrix->map_from_world, matrix->map, options_, matrix->border);
     if (!figures.ok()) return figures.status();
     absl::StatusOr<Figures> own = figures;
     if (own_view_.has_value()) {
-      own = EvaluateMatrix(*own_view_, matrix->map_from_world, matrix->map, own_options_);
+      own = EvaluateMatrix(
+          *own_view_, matrix->map_from_world, matrix->map, own_options_, matrix->border);
     }
     if (!own.ok()) return own.status();
     return JudgedMatrix{*std::move(matrix), *std::move(figures), *std::move(own)};
@@ -72,27 +66,8 @@ FitOptions FigureOptions(const FitOptions& options) {
   FitOptions figures = options;
   figures.samples = OnTheSameSurfaces(SampleOptions(), options);
   figures.cover = Cover::kShadowed;
+  figures.border = BorderChoice::kAutomatic;  // whichever the view is made for
   return figures;
-}
-
-FitOptions FocusedOptions(const FitOptions& options) {
-  FitOptions focused;
-  focused.samples = OnTheSameSurfaces(focused.samples, options);
-  focused.margin_percent = options.margin_percent;
-  focused.margin_texels = options.margin_texels;
-  focused.search = Search::kFocused;
-  focused.affine = Affine::kMinAreaRectangle;
-  focused.cover = Cover::kReceivers;
-  return focused;
-}
-
-FitOptions PublishedOptions(const FitOptions& options) {
-  FitOptions published = FitOptions::AsPublished();
-  published.samples = OnTheSameSurfaces(published.samples, options);
-  published.samples.min_samples = options.samples.min_samples;
-  published.margin_percent = options.margin_percent;
-  published.margin_texels = options.margin_texels;
-  return published;
 }
 
 FitComparison CompareFit(const Surfaces& surfaces,
@@ -101,14 +76,14 @@ FitComparison CompareFit(const Surfaces& surfaces,
                          const FitOptions& options) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
-  absl::StatusOr<LightMatrix> final = FitOne(surfaces, light, map, options);
+  absl::StatusOr<LightMatrix> final = FitLight(surfaces, light, map, options);
   const double time_ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
   if (!final.ok()) return FailedFitComparison(light, final.status());
-  const absl::StatusOr<Judge> judge = Judge::Of(surfaces, light, options);
+  const absl::StatusOr<Judge> judge = Judge::Of(surfaces, light, final->border, options);
   if (!judge.ok()) return FailedFitComparison(light, judge.status());
   return {light,
-          (*judge)(FitOne(surfaces, light, map, FocusedOptions(options))),
-          (*judge)(FitOne(surfaces, light, map, PublishedOptions(options))),
+          (*judge)(FitLight(surfaces, light, map, FitOptions::Focused(options))),
+          (*judge)(FitLight(surfaces, light, map, FitOptions::AsPublished(options))),
           (*judge)(std::move(final)),
           time_ms};
 }

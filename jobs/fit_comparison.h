@@ -36,10 +36,6 @@ struct FitComparison {
 // takes by default (SampleOptions), in the metric of `options`.
 FitOptions FigureOptions(const FitOptions& options);
 
-// The yardsticks' options: with the margin of `options`, else as their authors have it.
-FitOptions FocusedOptions(const FitOptions& options);
-FitOptions PublishedOptions(const FitOptions& options);
-
 // `light` of the surfaces' read-back, which must have been found for it.
 FitComparison CompareFit(const Surfaces& surfaces,
                          const Light& light,

@@ -13,6 +13,7 @@ absl::StatusOr<FitOptions> OptionsForSummaries(const FitOptions& asked, const Fi
   options.metric = held.metric;
   options.along_edge_share = held.along_edge_share;
   options.cover = held.cover;
+  options.border = held.border;
   options.compute_statistics = false;  // percentiles need the samples
   if (absl::Status status = ValidateFitOptions(options); !status.ok()) return status;
   return options;
@@ -47,6 +48,7 @@ void ClearReadbackFigures(v1::ReadbackInfo* readback,
   readback->clear_camera();  // each frame had its own
   for (v1::LightResult& light : *lights) {
     if (light.footprint().rms() == 0.0) light.clear_footprint();  // it needs the samples
+    light.clear_facing();
   }
 }
 

@@ -11,10 +11,9 @@
 #include "absl/types/span.h"
 #include "jobs/compare/rows.h"
 #include "picture/shadow_panel.h"
+#include "render/judge.h"
 
 namespace lightfit {
-
-enum class Bias { kIdeal, kPractical };
 
 // Whether there are wrong pixels to count and, with CompareOptions::keep_images, shadows to draw:
 // what the next two require.

@@ -93,16 +93,21 @@ class Page {
          absl::StrCat(options_.title, ", ", light_.light.name),
          {.size_px = kTitleSize, .color = kTextColor, .bold = true});
     const Camera& camera = stage_.screen.camera;
-    Text(kMargin,
-         kMargin + 44,
-         absl::StrFormat("screen %d x %d pixels, shadow map %d x %d texels; %s",
-                         camera.width,
-                         camera.height,
-                         options_.map.width,
-                         options_.map.height,
-                         options_.bias == Bias::kIdeal ? "ideal bias: sampling error alone"
-                                                       : "practical bias, as in a renderer"),
-         {.size_px = 16, .color = kFaintTextColor});
+    Text(
+        kMargin,
+        kMargin + 44,
+        absl::StrFormat("screen %d x %d pixels, shadow map %d x %d texels; %s%s",
+                        camera.width,
+                        camera.height,
+                        options_.map.width,
+                        options_.map.height,
+                        options_.bias == Bias::kIdeal ? "ideal bias: sampling error alone"
+                                                      : "practical bias, as in a renderer",
+                        options_.phases > 1
+                            ? absl::StrFormat("; counts are means of %d phases, the first is drawn",
+                                              options_.phases)
+                            : ""),
+        {.size_px = 16, .color = kFaintTextColor});
   }
 
   void DrawTruth() {

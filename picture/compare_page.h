@@ -19,6 +19,7 @@ namespace lightfit {
 struct ComparePictureOptions {
   std::string title;  // the scene's name
   MapSize map;
+  int phases = 1;  // that counts are means over; shadows are those of the first
   Bias bias = Bias::kIdeal;
 };
 

@@ -27,7 +27,7 @@ CORE = f"{SIZING} optimizer/tracking"
 WIRE = f"{CORE} lightfit proto wire"
 IO = f"{WIRE} io"
 JOBS = f"{IO} jobs jobs/*"
-EVERYTHING_BELOW_CLI = f"{JOBS} methods render picture calls server"
+EVERYTHING_BELOW_CLI = f"{JOBS} methods render render/* picture calls server"
 
 MAY_INCLUDE = {
     "base": "",
@@ -41,11 +41,13 @@ MAY_INCLUDE = {
     "optimizer/tracking": CORE,
     "methods": "base geometry",
     "render": CORE,
+    "render/generator": f"{CORE} render",
     "proto": "lightfit",
     "wire": WIRE,
     "io": IO,
     "jobs": IO,
     "jobs/compare": f"{IO} jobs methods render",
+    "jobs/tune": f"{IO} jobs jobs/compare methods render render/generator",
     "jobs/shot": f"{IO} jobs",
     "picture": f"{JOBS} methods render",
     "calls": f"{IO} jobs",
@@ -54,9 +56,9 @@ MAY_INCLUDE = {
     "cli/reports": f"{EVERYTHING_BELOW_CLI} cli/flags",
     "cli": f"{EVERYTHING_BELOW_CLI} cli/*",
     "python": f"{IO} jobs calls",
-    "examples": f"{CORE} render lightfit",
+    "examples": f"{CORE} render render/generator lightfit",
     "fuzz": f"{IO} jobs render calls",
-    "bench": f"{JOBS} methods render picture tests",
+    "bench": f"{JOBS} methods render render/* picture tests",
     "bench/service.cc": f"{JOBS} bench calls server tests",
     "tests": f"{EVERYTHING_BELOW_CLI} cli cli/*",
 }

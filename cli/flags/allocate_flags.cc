@@ -188,6 +188,7 @@ void DeclareAllocateFlags(CLI::App* app, AllocateFlags* flags) {
   app->callback([app, flags] {
     flags->fit.has_metric = app->count("--metric") > 0;
     flags->fit.has_cover = app->count("--cover") > 0;
+    flags->fit.has_border = app->count("--border") > 0;
     CheckSource(*app, flags->fit, {kInputGroup, kCameraGroup});
     CheckGoal(*flags);
   });

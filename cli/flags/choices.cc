@@ -32,6 +32,13 @@ const Words<Cover>& CoverWords() {
   return words;
 }
 
+const Words<BorderChoice>& BorderWords() {
+  static const auto& words = *new Words<BorderChoice>{{"lit", BorderChoice::kLit},
+                                                      {"dark", BorderChoice::kDark},
+                                                      {"auto", BorderChoice::kAutomatic}};
+  return words;
+}
+
 const Words<DepthKind>& DepthKindWords() {
   static const auto& words =
       *new Words<DepthKind>{{"camera-z", DepthKind::kCameraZ},

@@ -20,6 +20,7 @@ const Words<Search>& SearchWords();
 const Words<Affine>& AffineWords();
 const Words<Metric>& MetricWords();
 const Words<Cover>& CoverWords();
+const Words<BorderChoice>& BorderWords();
 const Words<DepthKind>& DepthKindWords();
 const Words<ClipConvention>& ClipWords();
 

@@ -35,7 +35,8 @@ constexpr char kExamples[] =
     "--next-readback, drift.\n"
     "--matrix: a result of lightfit fit --json, or {\"map_from_world\": [16 numbers], \"map\":\n"
     "{\"width\": 1024, \"height\": 1024}}, or {\"clip_from_world\": [16 numbers], \"clip\": "
-    "\"opengl\"}.";
+    "\"opengl\"};\n"
+    "with \"border\": \"dark\" where look-ups outside the map find shadow.";
 
 // Refuses the word while parsing when `parse` does.
 template <typename Parse, typename Target>
@@ -53,34 +54,6 @@ absl::StatusOr<MapSize> ParseJudgedMap(const std::string& text) {
         absl::StrCat(text, ": want at most ", kMaxTexels, " texels, such as 16384x16384"));
   }
   return map;
-}
-
-void DeclareSizes(CLI::App* app, CompareFlags* flags) {
-  const std::string group = "Sizes";
-  app->add_option_function<std::string>(
-         "--screen",
-         [flags](const std::string& text) {
-           ParseInto("--screen", text, ParsePixelSize, &flags->screen);
-         },
-         "The image whose wrong pixels are counted, pixels [750x750]")
-      ->type_name("WIDTHxHEIGHT")
-      ->group(group);
-  app->add_option_function<std::string>(
-         "--readback",
-         [flags](const std::string& text) {
-           ParseInto("--readback", text, ParsePixelSize, &flags->readback);
-         },
-         "The read-back that is fitted from, pixels [180x180, in the screen's aspect ratio]")
-      ->type_name("WIDTHxHEIGHT")
-      ->group(group);
-  app->add_option_function<std::string>(
-         "--map",
-         [flags](const std::string& text) {
-           ParseInto("--map", text, ParseJudgedMap, &flags->map);
-         },
-         "Every shadow map, texels [400x400]")
-      ->type_name("WIDTHxHEIGHT")
-      ->group(group);
 }
 
 void DeclareMatrices(CLI::App* app, CompareFlags* flags) {
@@ -105,11 +78,25 @@ void DeclareMatrices(CLI::App* app, CompareFlags* flags) {
       ->take_all()
       ->group("Methods");
   app->add_option("--bias-share",
-                  flags->bias.constant_share,
+                  flags->judge.constant_share,
                   "Constant part of the practical bias, of the receivers' range of distances from "
                   "the light [0.0002]")
       ->type_name("SHARE")
       ->check(CLI::Range(0.0, 1.0))
+      ->group("Methods");
+  app->add_option_function<int>(
+         "--phases",
+         [flags](int phases) {
+           JudgeOptions judge = flags->judge;
+           judge.phases = phases;
+           const absl::Status status = ValidateJudgeOptions(judge);
+           if (!status.ok()) throw CLI::ValidationError("--phases", std::string(status.message()));
+           flags->judge = judge;
+         },
+         "Wrong pixels are means over N phases, in which every map is moved by other parts of a "
+         "texel: 1, 4, 9, ... 64. The count of a single one depends on where single texels fall; 1 "
+         "counts the map as it is, in less time [4]")
+      ->type_name("N")
       ->group("Methods");
 }
 
@@ -193,9 +180,38 @@ bool CompareFlags::is_readback() const {
   return absl::EndsWith(absl::AsciiStrToLower(scene.scene), ".exr");
 }
 
+void DeclareSizeFlags(CLI::App* app, CompareFlags* flags) {
+  const std::string group = "Sizes";
+  app->add_option_function<std::string>(
+         "--screen",
+         [flags](const std::string& text) {
+           ParseInto("--screen", text, ParsePixelSize, &flags->screen);
+         },
+         "The image whose wrong pixels are counted, pixels [750x750]")
+      ->type_name("WIDTHxHEIGHT")
+      ->group(group);
+  app->add_option_function<std::string>(
+         "--readback",
+         [flags](const std::string& text) {
+           ParseInto("--readback", text, ParsePixelSize, &flags->readback);
+         },
+         "The read-back that is fitted from, pixels [180x180, in the screen's aspect ratio]")
+      ->type_name("WIDTHxHEIGHT")
+      ->group(group);
+  app->add_option_function<std::string>(
+         "--map",
+         [flags](const std::string& text) {
+           ParseInto("--map", text, ParseJudgedMap, &flags->map);
+         },
+         "Every shadow map, texels [400x400]")
+      ->type_name("WIDTHxHEIGHT")
+      ->group(group);
+}
+
 void DeclareCompareFlags(CLI::App* app, CompareFlags* flags) {
+  flags->fit.options.border = BorderChoice::kAutomatic;
   DeclareSceneFlags(app, &flags->scene, "SCENE|READBACK.exr");
-  DeclareSizes(app, flags);
+  DeclareSizeFlags(app, flags);
   DeclareMatrices(app, flags);
   DeclareCrawl(app, &flags->crawl);
   DeclareMethodFlags(app, &flags->fit.options);

@@ -13,8 +13,8 @@
 #include "cli/flags/fit_flags.h"
 #include "cli/flags/scene_flags.h"
 #include "jobs/compare/camera_step.h"
+#include "jobs/compare/rows.h"
 #include "picture/compare_choice.h"
-#include "render/judge.h"
 
 namespace CLI {
 class App;
@@ -46,7 +46,7 @@ struct CompareFlags {
   std::optional<PixelSize> readback;  // absent: DefaultReadbackSize()
   MapSize map = {400, 400};
   std::vector<MatrixFlag> matrices;
-  BiasOptions bias;  // constant_share only
+  JudgeOptions judge = CompareOptions().judge;
   CrawlFlags crawl;
 
   bool per_light = false;
@@ -62,6 +62,9 @@ struct CompareFlags {
 
 // Declares every option on `app`, to be parsed into `flags`, which must stay where it is.
 void DeclareCompareFlags(CLI::App* app, CompareFlags* flags);
+
+// Of them --screen, --readback and --map, for verbs that judge on a scene too.
+void DeclareSizeFlags(CLI::App* app, CompareFlags* flags);
 
 // "engine=matrices.json". The name must not be that of a row which is there already.
 absl::StatusOr<MatrixFlag> ParseMatrixFlag(const std::string& text);

@@ -28,7 +28,8 @@ constexpr char kExamples[] =
     "Units: positions and depth in world units, maps in texels, images in pixels.\n"
     "The read-back holds a depth channel Z and one channel shadow.LIGHT per light, above 0.5 "
     "where\n"
-    "that light is blocked; the camera comes from worldToCamera and worldToNDC in its header.";
+    "that light is blocked; facing.LIGHT, above 0.5 where a surface faces the light, is optional;\n"
+    "the camera comes from worldToCamera and worldToNDC in its header.";
 
 // An option whose value is one of a few words. CLI11's own transformer would also take the numbers
 // behind the words.
@@ -70,6 +71,7 @@ void DeclareInput(CLI::App* app, FitFlags* flags) {
   DeclareLightFlags(app, &flags->lights, group);
   DeclareOnlyFlag(app, group, flags);
   DeclareReadbackFlags(app, group, flags);
+  DeclareCoverReadbackFlag(app, group, flags);
 }
 
 // What `fit` asks of a read-back beside its channels.
@@ -95,6 +97,7 @@ void DeclareMethod(CLI::App* app, FitFlags* flags) {
       ->excludes(app->get_option("--affine"))
       ->excludes(app->get_option("--metric"))
       ->excludes(app->get_option("--cover"))
+      ->excludes(app->get_option("--border"))
       ->group(kMethodGroup);
 }
 
@@ -139,6 +142,29 @@ void DeclareReadbackFlags(CLI::App* app, const std::string& group, FitFlags* fla
                   flags->shadow_bits_channel,
                   "UINT channel that holds all shadows, light l in bit l")
       ->type_name("CHANNEL")
+      ->group(group);
+  app->add_option("--facing-channel",
+                  flags->facing_channel_format,
+                  "Name of the channels, where there are any, that say which surfaces face a light "
+                  "[facing.{light}]")
+      ->type_name("FORMAT")
+      ->group(group);
+  app->add_option("--mapped-channel",
+                  flags->mapped_channel_format,
+                  "Name of the channels, where there are any, that say what the map drawn with "
+                  "says [mapped.{light}]")
+      ->type_name("FORMAT")
+      ->group(group);
+}
+
+void DeclareCoverReadbackFlag(CLI::App* app, const std::string& group, FitFlags* flags) {
+  app->add_option(
+         "--cover-readback",
+         flags->cover_readback_path,
+         "The same frame with more pixels, for things thinner than those of READBACK: they "
+         "get room in the map where that makes fewer pixels wrong")
+      ->type_name("FILE")
+      ->check(CLI::ExistingFile)
       ->group(group);
 }
 
@@ -194,6 +220,15 @@ void DeclareMethodFlags(CLI::App* app, FitOptions* options) {
             "How the map is laid around what it covers [parallelogram]")
       ->group(kMethodGroup);
   DeclareSummingFlags(app, options);
+  AddChoice(app,
+            "--border",
+            BorderWords(),
+            &options->border,
+            absl::StrCat("What look-ups outside the map find: light, shadow, or of each light what "
+                         "makes fewer pixels wrong (border in the JSON file) [",
+                         WordFor(BorderWords(), options->border),
+                         "]"))
+      ->group(kMethodGroup);
   app->add_option("--margin-percent",
                   options->margin_percent,
                   "The map reaches this much beyond what it covers on every side [1]")
@@ -202,7 +237,7 @@ void DeclareMethodFlags(CLI::App* app, FitOptions* options) {
       ->group(kMethodGroup);
   app->add_option("--min-samples",
                   options->samples.min_samples,
-                  "Fewer usable shadow-edge pixels than this are not fitted [8]")
+                  "With fewer usable shadow-edge pixels than this a light gets its focused map [8]")
       ->type_name("COUNT")
       ->check(CLI::PositiveNumber)
       ->group(kMethodGroup);
@@ -219,8 +254,8 @@ void DeclareSummingFlags(CLI::App* app, FitOptions* options) {
             "--cover",
             CoverWords(),
             &options->cover,
-            "What the map has room for: shadowed surfaces, or all receivers in view; look-ups "
-            "outside find light [shadowed]")
+            "What the map has room for: surfaces that the border would get wrong, with a lit one "
+            "those in shadow; or all receivers in view [shadowed]")
       ->group(kMethodGroup);
 }
 
@@ -235,15 +270,17 @@ void DeclareMapFlags(CLI::App* app, const std::string& group, FitFlags* flags) {
          "Size of the shadow map in texels [1024x1024]")
       ->type_name("WIDTHxHEIGHT")
       ->group(group);
-  AddChoice(app,
-            "--clip",
-            ClipWords(),
-            &flags->clip,
-            "Clip space of clipFromWorld in the JSON file [vulkan]")
+  DeclareClipFlag(app, group, &flags->clip);
+}
+
+void DeclareClipFlag(CLI::App* app, const std::string& group, ClipConvention* clip) {
+  AddChoice(
+      app, "--clip", ClipWords(), clip, "Clip space of clipFromWorld in the JSON file [vulkan]")
       ->group(group);
 }
 
 void DeclareFitFlags(CLI::App* app, FitFlags* flags) {
+  flags->options.border = BorderChoice::kAutomatic;
   DeclareInput(app, flags);
   DeclareCameraFlags(app, kCameraGroup, flags);
   DeclareMapFlags(app, "Map", flags);
@@ -253,6 +290,7 @@ void DeclareFitFlags(CLI::App* app, FitFlags* flags) {
   app->callback([app, flags] {
     flags->has_metric = app->count("--metric") > 0;
     flags->has_cover = app->count("--cover") > 0;
+    flags->has_border = app->count("--border") > 0;
     CheckSource(*app, *flags, {kInputGroup, kCameraGroup});
     CheckNeedsOfFit(*app, *flags);
   });

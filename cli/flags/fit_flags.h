@@ -30,7 +30,7 @@ struct FitFlags {
 
   MapSize map = {1024, 1024};
   FitOptions options;
-  bool has_metric = false, has_cover = false;  // whether they were given
+  bool has_metric = false, has_cover = false, has_border = false;  // whether they were given
   bool as_published = false;
   ClipConvention clip = ClipConvention::Vulkan();
 
@@ -38,6 +38,9 @@ struct FitFlags {
   std::string depth_channel;
   std::string shadow_channel_format;
   std::string shadow_bits_channel;
+  std::string cover_readback_path;  // the same view finer, for the cover
+  std::string facing_channel_format;
+  std::string mapped_channel_format;
 
   std::string camera_path;
   int frame = 0;
@@ -54,14 +57,17 @@ void DeclareFitFlags(CLI::App* app, FitFlags* flags);
 
 // Parts of it, for verbs that fit or read a read-back too: which of the lights; what the channels
 // of the read-back mean; its camera; what the camera's attributes in its header mean; how it is
-// fitted, and of that what its samples are summed by; the map's size and clip space.
+// fitted, and of that what its samples are summed by; the map's size and clip space; clip space
+// alone. The border that `options` has when the method is declared is the default.
 void DeclareOnlyFlag(CLI::App* app, const std::string& group, FitFlags* flags);
 void DeclareReadbackFlags(CLI::App* app, const std::string& group, FitFlags* flags);
+void DeclareCoverReadbackFlag(CLI::App* app, const std::string& group, FitFlags* flags);
 void DeclareCameraFlags(CLI::App* app, const std::string& group, FitFlags* flags);
 void DeclareCameraExrFlags(CLI::App* app, const std::string& group, CameraExrOptions* camera);
 void DeclareMethodFlags(CLI::App* app, FitOptions* options);
 void DeclareSummingFlags(CLI::App* app, FitOptions* options);
 void DeclareMapFlags(CLI::App* app, const std::string& group, FitFlags* flags);
+void DeclareClipFlag(CLI::App* app, const std::string& group, ClipConvention* clip);
 
 // For verbs that take a read-back or summaries: throws CLI::ValidationError unless it is one of the
 // two, and with summaries no option of the groups that are about a read-back.

@@ -52,6 +52,12 @@ absl::StatusOr<ReadbackExrOptions> ReadbackOptionsOf(const FitFlags& flags) {
     options.shadow_channel_format = flags.shadow_channel_format;
   }
   options.shadow_bits_channel = flags.shadow_bits_channel;
+  if (!flags.facing_channel_format.empty()) {
+    options.facing_channel_format = flags.facing_channel_format;
+  }
+  if (!flags.mapped_channel_format.empty()) {
+    options.mapped_channel_format = flags.mapped_channel_format;
+  }
   options.camera_exr = flags.camera_exr;
   if (flags.camera_path.empty()) return options;
   absl::StatusOr<StatedCamera> file = ReadCameraFile(flags.camera_path, flags.frame);
@@ -61,6 +67,12 @@ absl::StatusOr<ReadbackExrOptions> ReadbackOptionsOf(const FitFlags& flags) {
   }
   options.camera = file->camera;
   return options;
+}
+
+Readback FitInputs::View() const {
+  Readback view = file.View();
+  if (fine_cover_file.has_value()) view.fine_cover = &fine_cover;
+  return view;
 }
 
 absl::StatusOr<FitInputs> ReadFitInputs(const FitFlags& flags) {
@@ -73,7 +85,14 @@ absl::StatusOr<FitInputs> ReadFitInputs(const FitFlags& flags) {
   absl::StatusOr<ReadbackFile> file = ReadReadbackExr(flags.readback_path, inputs.lights, *options);
   if (!file.ok()) return file.status();
   inputs.file = *std::move(file);
-  absl::Status status = ValidateReadback(inputs.file.View());
+  if (!flags.cover_readback_path.empty()) {
+    absl::StatusOr<FineCoverFile> fine =
+        ReadFineCoverExr(flags.cover_readback_path, inputs.lights, *options, inputs.file);
+    if (!fine.ok()) return fine.status();
+    inputs.fine_cover_file = *std::move(fine);
+    inputs.fine_cover = inputs.fine_cover_file->View();
+  }
+  absl::Status status = ValidateReadback(inputs.View());
   if (!status.ok()) return status;
   return inputs;
 }

@@ -3,11 +3,13 @@
 // What `lightfit fit` works on: the lights and the read-back that the flags name.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "cli/flags/fit_flags.h"
 #include "geometry/light.h"
+#include "io/fine_cover_exr.h"
 #include "io/readback_exr.h"
 
 namespace lightfit::cli {
@@ -16,6 +18,13 @@ struct FitInputs {
   std::vector<Light>
       lights;         // those of --lights, then those of --light, as far as --only keeps them
   ReadbackFile file;  // light_status[l] belongs to lights[l]
+
+  // --cover-readback.
+  std::optional<FineCoverFile> fine_cover_file;
+  FineCover fine_cover;
+
+  // With the finer cover, if there is one. Refers to this object.
+  Readback View() const;
 };
 
 absl::StatusOr<FitInputs> ReadFitInputs(const FitFlags& flags);

@@ -116,7 +116,8 @@ void DeclareSceneFlags(CLI::App* app, SceneFlags* flags, const std::string& type
            if (IsGenerator(text)) ParseInto("SCENE", text, ParseGenerator, &flags->generator);
          },
          "A .glb, .gltf, .obj or .ply file; or \"generate\" for objects on a floor, as in "
-         "generate:seed=1,objects=40,triangles=1100000,floor=20")
+         "generate:seed=1,objects=40,triangles=1100000,floor=20, or for a furnished room with "
+         "windows, as in generate:kind=room,seed=5,triangles=150000")
       ->required()
       ->type_name(type_name);
   DeclareCamera(app, flags);
@@ -214,14 +215,22 @@ absl::StatusOr<std::vector<Light>> SceneLights(const SceneFlags& flags) {
 absl::StatusOr<SceneGeneratorOptions> ParseGenerator(const std::string& text) {
   SceneGeneratorOptions options;
   if (text == kGenerate) return options;
-  const std::vector<std::string> names = {"seed", "objects", "triangles", "floor"};
+  const std::vector<std::string> names = {"kind", "seed", "objects", "triangles", "floor"};
+  std::string of_floor;                                         // a setting that a room has not
   const std::string settings = text.substr(sizeof(kGenerate));  // after the colon
   for (const absl::string_view setting : absl::StrSplit(settings, ',')) {
     const std::pair<std::string, std::string> pair =
         absl::StrSplit(setting, absl::MaxSplits('=', 1));
     const auto& [name, value] = pair;
     bool good = true;
-    if (name == "seed") {
+    if (name == "objects" || name == "floor") of_floor = name;
+    if (name == "kind") {
+      if (value != "floor" && value != "room") {
+        return absl::InvalidArgumentError(
+            absl::StrCat("\"", text, "\": kind = \"", value, "\", want floor or room"));
+      }
+      options.kind = value == "room" ? SceneKind::kRoom : SceneKind::kFloor;
+    } else if (name == "seed") {
       good = absl::SimpleAtoi(value, &options.seed);
     } else if (name == "objects") {
       good = absl::SimpleAtoi(value, &options.num_objects);
@@ -235,13 +244,18 @@ absl::StatusOr<SceneGeneratorOptions> ParseGenerator(const std::string& text) {
                        text,
                        "\": there is no setting \"",
                        name,
-                       "\", want some of seed=N,objects=N,triangles=N,floor=HALF_SIZE",
+                       "\", want some of kind=floor|room,seed=N,objects=N,triangles=N,"
+                       "floor=HALF_SIZE",
                        DidYouMean(name, names)));
     }
     if (!good) {
       return absl::InvalidArgumentError(
           absl::StrCat("\"", text, "\": ", name, " = \"", value, "\" is not such a number"));
     }
+  }
+  if (options.kind == SceneKind::kRoom && !of_floor.empty()) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "\"", text, "\": a room has no setting \"", of_floor, "\", want seed and triangles"));
   }
   return options;
 }

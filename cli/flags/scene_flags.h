@@ -15,8 +15,8 @@
 #include "cli/flags/light_flags.h"
 #include "geometry/camera.h"
 #include "geometry/light.h"
+#include "render/generator/scene_generator.h"
 #include "render/ray_caster.h"
-#include "render/scene_generator.h"
 
 namespace CLI {
 class App;
@@ -64,7 +64,8 @@ absl::StatusOr<Camera> MakeViewCamera(const SceneFlags& flags, int width, int he
 // shadow bit i modulo kMaxLights: more of them than that do not fit into one read-back.
 absl::StatusOr<std::vector<Light>> SceneLights(const SceneFlags& flags);
 
-// "generate:seed=2,objects=10,triangles=50000,floor=20", in any order.
+// "generate:seed=2,objects=10,triangles=50000,floor=20" or "generate:kind=room,seed=5", in any
+// order.
 absl::StatusOr<SceneGeneratorOptions> ParseGenerator(const std::string& text);
 
 // "180x180"; both at least 1, together at most 2^25 pixels.

@@ -98,6 +98,7 @@ bool HasOneCamera(const FitFlags& flags) {
 }  // namespace
 
 void DeclareShotFlags(CLI::App* app, ShotFlags* flags) {
+  flags->fit.options.border = BorderChoice::kAutomatic;
   const std::string input = "Input";
   app->add_option("frames",
                   flags->inputs,
@@ -119,6 +120,7 @@ void DeclareShotFlags(CLI::App* app, ShotFlags* flags) {
       ->excludes(app->get_option("--affine"))
       ->excludes(app->get_option("--metric"))
       ->excludes(app->get_option("--cover"))
+      ->excludes(app->get_option("--border"))
       ->group("Method");
   DeclareModes(app, flags);
   DeclareTracker(app, flags);
@@ -138,7 +140,7 @@ TrackerOptions TrackerOptionsOf(const ShotFlags& flags) {
   const bool as_published = flags.fit.as_published;
   TrackerOptions options =
       as_published ? TrackerOptions::AsPublished() : TrackerOptions::ForStability(flags.stability);
-  options.fit = as_published ? PublishedOptions(flags.fit.options) : flags.fit.options;
+  options.fit = as_published ? FitOptions::AsPublished(flags.fit.options) : flags.fit.options;
   options.replace_below = flags.replace_below.value_or(options.replace_below);
   options.update_every_frames = flags.update_every_frames.value_or(options.update_every_frames);
   options.cover_margin_percent = flags.cover_margin_percent.value_or(options.cover_margin_percent);

@@ -1,5 +1,6 @@
 #include "cli/reports/compare_report.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -16,6 +17,16 @@ constexpr char kPixelLegend[] =
     "alone;\n"
     "practical: with the bias of a renderer. x lightfit: how many times as many as lightfit.\n"
     "Outside: wrong pixels that lie outside the map.\n";
+constexpr char kPhaseLegend[] =
+    "Counts are means of %d phases: of the map moved by parts of a texel, as one of them depends "
+    "on "
+    "where\n"
+    "single texels fall.\n";
+constexpr char kBorderLegend[] =
+    "Border: what look-ups outside the map find, light (lit) or shadow (dark). Matrices are of no "
+    "use\n"
+    "with the other.\n";
+constexpr char kDarkLegend[] = "Dark: lights counted whose maps have a dark border.\n";
 constexpr char kFigureLegend[] =
     "Foretold: wrong pixels that the read-back alone lets expect, of all pixels of the image.\n"
     "Energy: Chong and Gortler's, squared footprints summed; lower is better. As-published and "
@@ -89,10 +100,18 @@ void AppendCrawlCells(const std::optional<MapCrawl>& crawl,
   cells->push_back(flips.has_value() ? PercentText(*flips) : "-");
 }
 
+bool HasDarkBorder(const LightComparison& light) {
+  return std::any_of(light.maps.begin(), light.maps.end(), [](const ComparedMap& map) {
+    return map.status.ok() && map.border == Border::kDark;
+  });
+}
+
 // "sun: 262266 pixels lit ...", the table, the notes.
 std::string LightText(const LightComparison& light, bool has_truth, bool has_crawl) {
   Table table;
   table.AddColumn("", "method");
+  const bool has_border = HasDarkBorder(light);
+  if (has_border) table.AddColumn("", "border");
   if (has_truth) {
     table.AddColumn("wrong pixels", "ideal");
     table.AddColumn("wrong pixels", "practical");
@@ -115,6 +134,7 @@ std::string LightText(const LightComparison& light, bool has_truth, bool has_cra
     }
     if (!map.note.empty()) notes.Add(map.name, map.note);
     std::vector<std::string> cells = {map.name};
+    if (has_border) cells.emplace_back(BorderName(map.border));
     if (has_truth) {
       cells.push_back(absl::StrCat(map.wrong->ideal));
       cells.push_back(absl::StrCat(map.wrong->practical));
@@ -166,6 +186,8 @@ std::string TotalsText(absl::Span<const LightComparison> lights, bool has_truth,
   if (has_crawl) AddCrawlColumns(has_truth, &table);
   table.AddColumn("lights", "counted");
   table.AddColumn("lights", "failed");
+  const bool has_border = std::any_of(lights.begin(), lights.end(), HasDarkBorder);
+  if (has_border) table.AddColumn("lights", "dark");
   for (const MethodTotals& totals : TotalsOf(lights)) {
     std::vector<std::string> cells = {totals.name};
     if (has_truth) {
@@ -176,6 +198,7 @@ std::string TotalsText(absl::Span<const LightComparison> lights, bool has_truth,
     if (has_crawl) AppendCrawlCells(totals.crawl, has_truth, &cells);
     cells.push_back(absl::StrCat(totals.num_lights));
     cells.push_back(absl::StrCat(totals.num_failed));
+    if (has_border) cells.push_back(absl::StrCat(totals.num_dark));
     table.AddRow(std::move(cells));
   }
   return absl::StrCat(lights.size(), " lights\n\n", table.Text());
@@ -241,6 +264,7 @@ void AppendCsvRow(const LightComparison& light, const ComparedMap& map, std::str
   absl::StrAppend(csv, CsvNumber(map.foretold), ",");
   AppendCsvCrawl(map.crawl, csv);
   absl::StrAppend(csv, light.samples.used, ",", light.lighting.lit, ",", light.lighting.shadowed);
+  absl::StrAppend(csv, ",", map.status.ok() ? BorderName(map.border) : "");
   absl::StrAppend(
       csv, ",", CsvField(map.status.ok() ? map.note : std::string(map.status.message())), "\n");
 }
@@ -251,21 +275,24 @@ std::string CompareReportText(const CompareHeading& heading,
                               absl::Span<const LightComparison> lights,
                               bool per_light) {
   const bool has_truth = heading.screen_width > 0;
+  const bool is_mean = has_truth && heading.phases > 1;
   std::string text = absl::StrCat(heading.source, ": ");
   if (has_truth) {
     absl::StrAppendFormat(
         &text, "screen %d x %d pixels, ", heading.screen_width, heading.screen_height);
   }
   absl::StrAppendFormat(&text,
-                        "read-back %d x %d pixels; map %d x %d texels\nlightfit: %s\n",
+                        "read-back %d x %d pixels; map %d x %d texels%s\nlightfit: %s\n",
                         heading.readback_width,
                         heading.readback_height,
                         heading.map.width,
                         heading.map.height,
+                        is_mean ? absl::StrCat(", mean of ", heading.phases, " phases") : "",
                         heading.fit);
   const bool has_crawl = !heading.next.empty();
   if (has_crawl) absl::StrAppend(&text, "crawl: to the next frame, ", heading.next, "\n");
   const bool totals = lights.size() != 1;
+  const bool has_border = std::any_of(lights.begin(), lights.end(), HasDarkBorder);
   if (!totals || per_light) {
     for (const LightComparison& light : lights) {
       absl::StrAppend(&text, "\n", LightText(light, has_truth, has_crawl));
@@ -276,9 +303,11 @@ std::string CompareReportText(const CompareHeading& heading,
     absl::StrAppend(&text, kPixelLegend);
   else
     absl::StrAppend(&text, "\nA read-back alone has no truth to count wrong pixels by.\n");
+  if (is_mean) absl::StrAppendFormat(&text, kPhaseLegend, heading.phases);
+  if (has_border) absl::StrAppend(&text, kBorderLegend);
   absl::StrAppend(&text, kFigureLegend);
   if (has_crawl) absl::StrAppend(&text, kCrawlLegend, has_truth ? kFlipLegend : "");
-  if (totals) absl::StrAppend(&text, kTotalLegend);
+  if (totals) absl::StrAppend(&text, kTotalLegend, has_border ? kDarkLegend : "");
   return text;
 }
 
@@ -287,7 +316,7 @@ std::string CompareCsv(absl::Span<const LightComparison> lights) {
       "light,kind,x,y,z,method,status,wrong_ideal,wrong_practical,wrong_practical_weighted,"
       "wrong_outside,ratio_ideal,ratio_practical,energy,energy_ratio,footprint_rms,"
       "footprint_worst,foretold_share,crawl_texels,crawl_moved_share,crawl_edge_px,"
-      "flips_judged,flips_ideal,flips_practical,samples,pixels_lit,pixels_shadowed,note\n";
+      "flips_judged,flips_ideal,flips_practical,samples,pixels_lit,pixels_shadowed,border,note\n";
   for (const LightComparison& light : lights) {
     for (const ComparedMap& map : light.maps) AppendCsvRow(light, map, &csv);
   }

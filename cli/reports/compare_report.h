@@ -18,6 +18,7 @@ struct CompareHeading {
   int screen_width = 0, screen_height = 0;  // 0: only a read-back is known
   int readback_width = 0, readback_height = 0;
   MapSize map;
+  int phases = 1;    // of the counts of wrong pixels
   std::string fit;   // of the row "lightfit", see MethodText()
   std::string next;  // the frame that crawl is measured to; empty: none is
 };

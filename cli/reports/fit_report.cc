@@ -1,10 +1,15 @@
 #include "cli/reports/fit_report.h"
 
+#include <algorithm>
+#include <optional>
+#include <utility>
+
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "base/number.h"
 #include "base/table.h"
 #include "cli/flags/choices.h"
+#include "optimizer/figures/foretell.h"
 
 namespace lightfit::cli {
 namespace {
@@ -13,7 +18,8 @@ constexpr char kNoMatrix[] = "no matrix, see below";
 
 constexpr char kLegend[] =
     "\nWrong: shadow pixels that will be wrong, foretold, of all pixels of the image, with the\n"
-    "nearest texel and no fault of the bias. Fewer than: how many times fewer the final map has.\n"
+    "nearest texel and no fault of the bias. Fewer than: how many times fewer the final map has;\n"
+    "\"same\": about as many, as far as can be foretold.\n"
     "Footprint: how far one texel reaches on the screen at the shadow edges, in read-back pixels;\n"
     "below 1 is finer. Figures are over the shadow-edge pixels that a fit takes by default, "
     "whatever\n"
@@ -21,10 +27,39 @@ constexpr char kLegend[] =
     "Focused: the usual map around all that is visible. Published: Chong and Gortler's Algorithm "
     "1.\n";
 
+// What stands below the table where a light has it.
+constexpr char kBorderLegend[] =
+    "Border: what look-ups outside the final map must find; the matrix is of no use with the "
+    "other.\n"
+    "Figures of a light with a dark border are over the edges that such a map serves.\n";
+
+bool HasDarkBorder(const std::vector<FitComparison>& comparisons) {
+  return std::any_of(comparisons.begin(), comparisons.end(), [](const FitComparison& comparison) {
+    return comparison.final.ok() && comparison.final->matrix.border == Border::kDark;
+  });
+}
+
+// How far off the forecasts may be, and what would make them better.
+std::string ForecastText(const Readback& readback, const std::vector<FitComparison>& comparisons) {
+  for (const FitComparison& comparison : comparisons) {
+    if (!comparison.final.ok()) continue;
+    return absl::StrFormat(
+        "On two lights of three the measured share is within a factor of %.1f of the foretold "
+        "one%s.\n",
+        ForecastFactor(readback, comparison.light),
+        readback.KnowsFacing(comparison.light.shadow_bit)
+            ? ""
+            : "; with\nfacing.LIGHT channels in the read-back it is nearer, and borders can be "
+              "chosen");
+  }
+  return "";
+}
+
 std::string RatioText(const absl::StatusOr<JudgedMatrix>& before, const Figures& after) {
   if (!before.ok() || !(after.wrong_share.value_or(0.0) > 0.0)) return "-";
-  return absl::StrCat(FigureText(before->figures.wrong_share.value_or(0.0) / *after.wrong_share),
-                      "x");
+  const double ratio = before->figures.wrong_share.value_or(0.0) / *after.wrong_share;
+  if (ratio < kSameForecast && ratio > 1.0 / kSameForecast) return "same";
+  return absl::StrCat(FigureText(ratio), "x");
 }
 
 std::string WrongText(const absl::StatusOr<JudgedMatrix>& map) {
@@ -33,7 +68,9 @@ std::string WrongText(const absl::StatusOr<JudgedMatrix>& map) {
 
 Table FigureTable(const std::vector<FitComparison>& comparisons) {
   Table table;
+  const bool has_border = HasDarkBorder(comparisons);
   table.AddColumn("", "light");
+  if (has_border) table.AddColumn("", "border");
   table.AddColumn("wrong, % of the image", "focused");
   table.AddColumn("wrong, % of the image", "published");
   table.AddColumn("wrong, % of the image", "final");
@@ -51,17 +88,22 @@ Table FigureTable(const std::vector<FitComparison>& comparisons) {
     }
     const Figures& final = comparison.final->figures;
     const bool has_focused = comparison.focused.ok();
-    table.AddRow({comparison.light.name,
-                  WrongText(comparison.focused),
-                  WrongText(comparison.published),
-                  WrongText(comparison.final),
-                  RatioText(comparison.focused, final),
-                  RatioText(comparison.published, final),
-                  has_focused ? FigureText(comparison.focused->figures.footprint.rms) : "-",
-                  FigureText(final.footprint.rms),
-                  has_focused ? FigureText(comparison.focused->figures.footprint.p99) : "-",
-                  FigureText(final.footprint.p99),
-                  FigureText(comparison.final_time_ms)});
+    std::vector<std::string> row = {comparison.light.name};
+    if (has_border) row.push_back(BorderName(comparison.final->matrix.border));
+    for (std::string cell :
+         {WrongText(comparison.focused),
+          WrongText(comparison.published),
+          WrongText(comparison.final),
+          RatioText(comparison.focused, final),
+          RatioText(comparison.published, final),
+          has_focused ? FigureText(comparison.focused->figures.footprint.rms) : std::string("-"),
+          FigureText(final.footprint.rms),
+          has_focused ? FigureText(comparison.focused->figures.footprint.p99) : std::string("-"),
+          FigureText(final.footprint.p99),
+          FigureText(comparison.final_time_ms)}) {
+      row.push_back(std::move(cell));
+    }
+    table.AddRow(std::move(row));
   }
   return table;
 }
@@ -75,24 +117,55 @@ Table SampleTable(const std::vector<FitComparison>& comparisons) {
   table.AddColumn("rejected", "facing away");
   table.AddColumn("rejected", "edge-on");
   table.AddColumn("rejected", "background");
+  const bool has_border = HasDarkBorder(comparisons);
+  if (has_border) table.AddColumn("rejected", "far outside");
   for (const FitComparison& comparison : comparisons) {
     if (!comparison.final.ok()) {
       table.AddRow({comparison.light.name, kNoMatrix});
       continue;
     }
     const SampleCounts& counts = comparison.final->matrix.figures.samples;
-    table.AddRow({comparison.light.name,
-                  absl::StrCat(counts.candidates),
-                  absl::StrCat(counts.used),
-                  absl::StrCat(counts.discontinuity),
-                  absl::StrCat(counts.facing_away),
-                  absl::StrCat(counts.edge_on),
-                  absl::StrCat(counts.background)});
+    std::vector<std::string> row = {comparison.light.name,
+                                    absl::StrCat(counts.candidates),
+                                    absl::StrCat(counts.used),
+                                    absl::StrCat(counts.discontinuity),
+                                    absl::StrCat(counts.facing_away),
+                                    absl::StrCat(counts.edge_on),
+                                    absl::StrCat(counts.background)};
+    if (has_border) row.push_back(absl::StrCat(counts.beyond_map));
+    table.AddRow(std::move(row));
   }
   return table;
 }
 
+// What the read-back says of the map that was drawn with, light by light, where it does.
+std::string MeasuredText(const Readback& readback, const std::vector<FitComparison>& comparisons) {
+  std::string text;
+  for (const FitComparison& comparison : comparisons) {
+    const std::optional<double> share = MeasuredWrongShare(readback, comparison.light);
+    if (!share.has_value()) continue;
+    absl::StrAppend(&text,
+                    text.empty() ? "Wrong with the map that is drawn with, measured: " : ", ",
+                    comparison.light.name,
+                    " ",
+                    PercentText(*share),
+                    " %");
+  }
+  return text.empty() ? text : absl::StrCat(text, ".\n");
+}
+
 }  // namespace
+
+std::string FocusedInsteadText(const LightMatrix& matrix, const FitOptions& options) {
+  if (matrix.search.stop_reason != StopReason::kTooFewSamples) return "";
+  return absl::StrFormat(
+      "light \"%s\": %d usable shadow-edge pixels, fewer than %d (--min-samples): its matrix is "
+      "the "
+      "focused map",
+      absl::string_view(matrix.light_name),
+      matrix.figures.samples.used,
+      options.samples.min_samples);
+}
 
 std::string MethodText(const FitOptions& options) {
   return absl::StrCat(WordFor(SearchWords(), options.search),
@@ -103,7 +176,11 @@ std::string MethodText(const FitOptions& options) {
                       ", ",
                       WordFor(MetricWords(), options.metric),
                       " metric, around what is ",
-                      options.cover == Cover::kShadowed ? "shadowed" : "visible");
+                      options.cover == Cover::kReceivers      ? "visible"
+                      : options.border == BorderChoice::kDark ? "lit, dark border"
+                      : options.border == BorderChoice::kAutomatic
+                          ? "shadowed or lit, the border by forecast"
+                          : "shadowed");
 }
 
 std::string ShortMethodText(const FitOptions& options) {
@@ -126,7 +203,10 @@ std::string FitReportText(const std::string& source,
                       FigureTable(comparisons).Text(),
                       "\n",
                       SampleTable(comparisons).Text(),
-                      kLegend);
+                      kLegend,
+                      HasDarkBorder(comparisons) ? kBorderLegend : "",
+                      ForecastText(readback, comparisons),
+                      MeasuredText(readback, comparisons));
 }
 
 }  // namespace lightfit::cli

@@ -17,6 +17,9 @@ std::string FitReportText(const std::string& source,
                           const FitOptions& options,
                           const std::vector<FitComparison>& comparisons);
 
+// Why a light has its focused map instead of a searched one; empty: it has not.
+std::string FocusedInsteadText(const LightMatrix& matrix, const FitOptions& options);
+
 // "global search, parallelogram, l2 metric": the choices in the command line's words.
 std::string MethodText(const FitOptions& options);
 

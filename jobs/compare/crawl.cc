@@ -67,14 +67,13 @@ std::optional<double> IdealFlipShare(const MapCrawl& crawl) {
 absl::StatusOr<MapCrawl> MeasureMapCrawl(const PresentMap& present,
                                          const NextFrame& next,
                                          const LitStage& next_frame,
-                                         const Eigen::Matrix4d& next_map_from_world,
-                                         MapSize map,
-                                         const BiasOptions& bias) {
+                                         const JudgedMap& next_map,
+                                         const JudgeOptions& judge) {
   const absl::StatusOr<Crawl> points =
-      MeasureCrawl({present.frame.readback, present.map_from_world, map},
+      MeasureCrawl({present.frame.readback, present.map_from_world, next_map.size},
                    {next_frame.readback,
-                    next_map_from_world,
-                    map,
+                    next_map.map_from_world,
+                    next_map.size,
                     next_frame.surfaces->ok() ? &**next_frame.surfaces : nullptr},
                    next_frame.light);
   if (!points.ok()) return points.status();
@@ -82,13 +81,8 @@ absl::StatusOr<MapCrawl> MeasureMapCrawl(const PresentMap& present,
   crawl.points = *points;
   const CompareStage& stage = *present.frame.stage;
   if (!stage.has_truth()) return crawl;
-  const absl::StatusOr<ShadowImage> next_shadows = JudgeMatrix(*stage.caster,
-                                                               stage.screen,
-                                                               present.truth,
-                                                               present.frame.light,
-                                                               next_map_from_world,
-                                                               map,
-                                                               bias);
+  const absl::StatusOr<ShadowImage> next_shadows = JudgeFirstPhase(
+      *stage.caster, stage.screen, present.truth, present.frame.light, next_map, judge);
   if (!next_shadows.ok()) return next_shadows.status();
   crawl.flicker = CountFlips(present.shadows, *next_shadows, next.seen);
   return crawl;

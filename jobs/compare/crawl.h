@@ -12,7 +12,6 @@
 
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
-#include "geometry/map_size.h"
 #include "jobs/compare/stage.h"
 #include "optimizer/figures/stability.h"
 #include "render/flicker.h"
@@ -50,13 +49,12 @@ struct PresentMap {
   const ShadowImage& shadows;
 };
 
-// From that map to `next_map_from_world`, the light's in the next frame.
+// From that map to the light's in the next frame, which is of the same size.
 absl::StatusOr<MapCrawl> MeasureMapCrawl(const PresentMap& present,
                                          const NextFrame& next,
                                          const LitStage& next_frame,
-                                         const Eigen::Matrix4d& next_map_from_world,
-                                         MapSize map,
-                                         const BiasOptions& bias);
+                                         const JudgedMap& next_map,
+                                         const JudgeOptions& judge);
 
 // As if all points, and all pixels, were one light's. Nothing from nothing.
 std::optional<MapCrawl> PooledCrawl(absl::Span<const MapCrawl> crawls);

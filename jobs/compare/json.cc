@@ -48,6 +48,7 @@ v1::MethodComparison MethodToProto(const ComparedMap& map, const ComparedMap& li
   proto.set_note(map.note);
   if (!map.status.ok()) return proto;
   *proto.mutable_map_from_world() = MatrixToProto(map.map_from_world);
+  proto.set_border(BorderToProto(map.border));
   if (map.figures.has_value()) {
     proto.set_energy(map.figures->energy);
     *proto.mutable_footprint() = FootprintToProto(map.figures->footprint, true);
@@ -116,7 +117,10 @@ v1::Comparison ComparisonToProto(const std::string& source,
   proto.set_source(source);
   *proto.mutable_camera() = CameraOf(stage);
   if (options.next != nullptr) *proto.mutable_next_camera() = CameraOf(options.next->stage);
-  if (stage.has_truth()) proto.set_bias_constant_share(options.bias.constant_share);
+  if (stage.has_truth()) {
+    proto.set_bias_constant_share(options.judge.constant_share);
+    proto.set_phases(options.judge.phases);
+  }
   proto.set_readback_width(stage.readback.width());
   proto.set_readback_height(stage.readback.height());
   proto.mutable_map()->set_width(options.map.width);

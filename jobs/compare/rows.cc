@@ -36,37 +36,43 @@ void Measure(const LightView& view, const Eigen::Matrix3d& map_from_ray, Compare
   if (!std::isfinite(figures.energy) || !std::isfinite(figures.footprint.worst)) {
     return AddNote("no energy: the matrix is singular at the samples", row);
   }
-  row->figures = std::move(figures);
+  row->figures = figures;
 }
 
-// How a method gets its matrix from what is known of one frame.
-using SetUp = std::function<absl::StatusOr<MethodMap>(const LitStage&)>;
+struct RowMap {
+  Eigen::Matrix4d map_from_world;
+  Border border = Border::kLit;
+  std::string note = "";  // as MethodMap::note
+};
+
+// How a method gets its map from what is known of one frame.
+using SetUp = std::function<absl::StatusOr<RowMap>(const LitStage&)>;
 
 SetUp SetUpOf(Method method, MapSize map) {
-  return [method, map](const LitStage& frame) {
+  return [method, map](const LitStage& frame) -> absl::StatusOr<RowMap> {
     MethodInput input = frame.stage->view;
     input.light = frame.light;
     input.map = map;
-    return SetUpMap(method, input);
+    const absl::StatusOr<MethodMap> set_up = SetUpMap(method, input);
+    if (!set_up.ok()) return set_up.status();
+    return RowMap{set_up->map_from_world, Border::kLit, set_up->note};
   };
 }
 
 SetUp SetUpOf(const FitOptions& options, MapSize map) {
-  return [options, map](const LitStage& frame) -> absl::StatusOr<MethodMap> {
+  return [options, map](const LitStage& frame) -> absl::StatusOr<RowMap> {
     if (!frame.surfaces->ok()) return frame.surfaces->status();
-    const absl::StatusOr<LightView> view = ViewLight(**frame.surfaces, frame.light, options);
-    if (!view.ok()) return view.status();
-    const absl::StatusOr<LightMatrix> fit = FitLight(*view, map, options);
+    const absl::StatusOr<LightMatrix> fit = FitLight(**frame.surfaces, frame.light, map, options);
     if (!fit.ok()) return fit.status();
-    return MethodMap{fit->map_from_world, ""};
+    return RowMap{fit->map_from_world, fit->border};
   };
 }
 
 SetUp SetUpOf(const GivenMatrices& given) {
-  return [&given](const LitStage& frame) -> absl::StatusOr<MethodMap> {
-    const absl::StatusOr<Eigen::Matrix4d> matrix = given.Of(frame.light.name);
+  return [&given](const LitStage& frame) -> absl::StatusOr<RowMap> {
+    const absl::StatusOr<GivenMatrix> matrix = given.Of(frame.light.name);
     if (!matrix.ok()) return matrix.status();
-    return MethodMap{*matrix, ""};
+    return RowMap{matrix->map_from_world, matrix->border};
   };
 }
 
@@ -95,26 +101,27 @@ class RowMaker {
 
  private:
   absl::Status AddPresent(const SetUp& set_up, ComparedMap* row, ShadowImage* shadows) {
-    const absl::StatusOr<MethodMap> map = set_up(frame_);
+    const absl::StatusOr<RowMap> map = set_up(frame_);
     if (!map.ok()) return map.status();
     row->note = map->note;
     const Light& light = frame_.light;
     const absl::StatusOr<Eigen::Matrix3d> map_from_ray = MapFromRay(map->map_from_world, light);
     if (!map_from_ray.ok()) return map_from_ray.status();
     row->map_from_world = map->map_from_world;
+    row->border = map->border;
     if (view_.ok()) Measure(*view_, *map_from_ray, row);
-    const absl::StatusOr<double> foretold =
-        ForetellWrongShare(frame_.readback, light, row->map_from_world, options_.map);
+    const absl::StatusOr<double> foretold = ForetellWrongShare(
+        frame_.readback, light, row->map_from_world, options_.map, {}, row->border);
     if (foretold.ok()) row->foretold = *foretold;
     const CompareStage& stage = *frame_.stage;
     if (!stage.has_truth()) return absl::OkStatus();
-    absl::StatusOr<ShadowImage> image = JudgeMatrix(*stage.caster,
-                                                    stage.screen,
-                                                    comparison_->truth,
-                                                    light,
-                                                    row->map_from_world,
-                                                    options_.map,
-                                                    options_.bias);
+    absl::StatusOr<ShadowImage> image =
+        JudgeMatrix(*stage.caster,
+                    stage.screen,
+                    comparison_->truth,
+                    light,
+                    {map->map_from_world, options_.map, map->border},
+                    options_.judge);
     if (!image.ok()) return image.status();
     row->wrong = image->wrong;
     *shadows = *std::move(image);
@@ -124,14 +131,13 @@ class RowMaker {
   // Sets the crawl, or the note that says why there is none.
   void AddCrawl(const SetUp& set_up, const ShadowImage& shadows, ComparedMap* row) {
     if (options_.before_row) options_.before_row(row->name + ", next frame");
-    const absl::StatusOr<MethodMap> map = set_up(next_frame_);
+    const absl::StatusOr<RowMap> map = set_up(next_frame_);
     const absl::StatusOr<MapCrawl> crawl =
         map.ok() ? MeasureMapCrawl({frame_, comparison_->truth, row->map_from_world, shadows},
                                    *options_.next,
                                    next_frame_,
-                                   map->map_from_world,
-                                   options_.map,
-                                   options_.bias)
+                                   {map->map_from_world, options_.map, map->border},
+                                   options_.judge)
                  : map.status();
     if (!crawl.ok()) {
       return AddNote("no crawl, in the next frame: " + std::string(crawl.status().message()), row);
@@ -148,7 +154,7 @@ class RowMaker {
 
 // Algorithm 1 with normalised rays instead of light space.
 FitOptions LineOptions(const FitOptions& options) {
-  FitOptions line = PublishedOptions(options);
+  FitOptions line = FitOptions::AsPublished(options);
   line.ray_space = RaySpace::kNormalized;
   line.sample_by_sample = false;
   return line;
@@ -194,7 +200,7 @@ LightComparison CompareMaps(const CompareStage& stage,
   RowMaker rows(frame, view, options, &comparison);
   const MapSize map = options.map;
   for (const Method method : AllMethods()) rows.Add(MethodName(method), SetUpOf(method, map));
-  rows.Add(kAsPublishedName, SetUpOf(PublishedOptions(options.fit), map));
+  rows.Add(kAsPublishedName, SetUpOf(FitOptions::AsPublished(options.fit), map));
   rows.Add(kLineName, SetUpOf(LineOptions(options.fit), map));
   for (const GivenMatrices& given : options.given) rows.Add(given.name, SetUpOf(given));
   rows.Add(kLightfitName, SetUpOf(options.fit, map));

@@ -19,6 +19,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "geometry/border.h"
 #include "geometry/light.h"
 #include "geometry/map_size.h"
 #include "io/given_matrices.h"
@@ -39,7 +40,11 @@ inline constexpr char kLineName[] = "line";
 struct CompareOptions {
   MapSize map = {400, 400};
   FitOptions fit;  // of "lightfit"; its margin and min_samples go for the other fits too
-  BiasOptions bias;
+
+  // Counts are means over phases, as those of a single one jump about by a tenth and more when the
+  // map is moved by a part of a texel, which hides differences between methods.
+  JudgeOptions judge = {.phases = 4};
+
   std::vector<GivenMatrices> given;
   bool keep_images = false;
 
@@ -58,13 +63,17 @@ struct ComparedMap {
   std::string note;     // empty, or how the method fell back, or why `figures` are absent
   Eigen::Matrix4d map_from_world = Eigen::Matrix4d::Identity();  // texels of CompareOptions::map
 
+  // What look-ups outside the map find. Of a fit LightMatrix::border, of a matrix that was given
+  // what was said with it; the published set-ups know only a lit one.
+  Border border = Border::kLit;
+
   // Over the samples that every table is over (FigureOptions()). The energy is Chong and Gortler's,
   // math.md (3), squared footprints, whatever was minimised. Absent: no samples, or w <= 0 at some.
   std::optional<Figures> figures;
   std::optional<WrongPixels> wrong;  // absent without truth
   std::optional<double> foretold;    // share of wrong pixels foretold from the read-back
   std::optional<MapCrawl> crawl;     // to CompareOptions::next; absent: `note` says why
-  ShadowImage image;                 // CompareOptions::keep_images
+  ShadowImage image;                 // CompareOptions::keep_images; of the first phase
 };
 
 struct LightComparison {

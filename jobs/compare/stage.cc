@@ -143,10 +143,14 @@ LitStage Lit(const CompareStage& stage, const Light& light) {
   if (!stage.has_truth()) return lit;
   lit.light.shadow_bit = 0;
   for (const Lighting lighting : TrueLighting(*stage.caster, stage.readback_surfaces, light)) {
-    lit.shadow_bits.push_back(lighting == Lighting::kShadowed ? 1 : 0);
+    const bool is_shadowed = lighting == Lighting::kShadowed;
+    lit.shadow_bits.push_back(is_shadowed ? 1 : 0);
+    lit.facing_bits.push_back(is_shadowed || lighting == Lighting::kLit ? 1 : 0);
   }
   lit.readback.depth = stage.readback_depth;
   lit.readback.shadow_bits = lit.shadow_bits;
+  lit.readback.facing_bits = lit.facing_bits;
+  lit.readback.facing_lights = 1u;
   lit.surfaces =
       std::make_shared<const absl::StatusOr<Surfaces>>(FindSurfaces(lit.readback, 1u, {}));
   return lit;

@@ -55,6 +55,7 @@ struct LitStage {
   const CompareStage* stage = nullptr;
   Light light;                        // with a caster its shadow bit is 0, whatever it was
   std::vector<uint32_t> shadow_bits;  // with a caster: of the read-back
+  std::vector<uint32_t> facing_bits;  // likewise
   Readback readback;
   std::shared_ptr<const absl::StatusOr<Surfaces>> surfaces;  // of `readback`; never null
 };

@@ -44,6 +44,7 @@ MethodTotals TotalsOfRow(absl::Span<const LightComparison> lights, size_t row) {
     if (!map.status.ok()) ++totals.num_failed;
     if (!map.status.ok() || !lightfit.status.ok()) continue;
     ++totals.num_lights;
+    if (map.border == Border::kDark) ++totals.num_dark;
     if (map.wrong.has_value() && lightfit.wrong.has_value()) {
       ideal.Add(map.wrong->ideal, lightfit.wrong->ideal);
       practical.Add(map.wrong->practical, lightfit.wrong->practical);

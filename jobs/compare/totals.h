@@ -28,6 +28,7 @@ struct MethodTotals {
   std::string name;
   int num_lights = 0;  // with a matrix of this method and one of lightfit: what is counted below
   int num_failed = 0;  // without a matrix of this method
+  int num_dark = 0;    // of num_lights: whose map has a dark border
 
   // Wrong pixels; absent without truth or without lights.
   struct Pixels {

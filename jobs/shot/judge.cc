@@ -9,21 +9,37 @@
 namespace lightfit {
 namespace {
 
+// The view says which border it is for.
+FitOptions AnyBorder(FitOptions options) {
+  options.border = BorderChoice::kAutomatic;
+  return options;
+}
+
 absl::StatusOr<ShotFit> JudgeFit(const ShotJob& job,
                                  const LightView& view,
                                  const TrackedMatrix& tracked,
                                  const ReadbackFile* file_before,
-                                 const std::optional<Eigen::Matrix4d>& map_before) {
+                                 const std::optional<LightMap>& map_before) {
   ShotFit fit;
   fit.tracked = tracked;
   LightMatrix& matrix = fit.tracked.matrix;
-  absl::StatusOr<Figures> figures =
-      EvaluateMatrix(view, matrix.map_from_world, matrix.map, job.fit());
+  std::optional<LightView> other;  // where the border was chosen otherwise
+  if (matrix.border != view.border) {
+    absl::StatusOr<LightView> made =
+        ViewLight(*view.surfaces, *view.light, matrix.border, job.fit());
+    if (!made.ok()) return made.status();
+    other = *std::move(made);
+  }
+  absl::StatusOr<Figures> figures = EvaluateMatrix(other.has_value() ? *other : view,
+                                                   matrix.map_from_world,
+                                                   matrix.map,
+                                                   AnyBorder(job.fit()),
+                                                   matrix.border);
   if (!figures.ok()) return figures.status();
   matrix.figures = *std::move(figures);
   if (file_before == nullptr || !map_before.has_value()) return fit;
   const absl::StatusOr<Crawl> crawl =
-      MeasureCrawl({file_before->View(), *map_before, job.map},
+      MeasureCrawl({file_before->View(), map_before->map_from_world, job.map},
                    {view.surfaces->readback, matrix.map_from_world, matrix.map, view.surfaces},
                    *view.light,
                    job.fit().samples);
@@ -82,7 +98,7 @@ LightMaps MapsOf(absl::Span<const absl::StatusOr<TrackedMatrix>> matrices) {
   LightMaps maps;
   for (const absl::StatusOr<TrackedMatrix>& matrix : matrices) {
     maps.emplace_back();
-    if (matrix.ok()) maps.back() = matrix->matrix.map_from_world;
+    if (matrix.ok()) maps.back() = {matrix->matrix.map_from_world, matrix->matrix.border};
   }
   return maps;
 }
@@ -94,7 +110,8 @@ LightMaps MapsOf(const ShotJob& job, const v1::FitResult& result) {
     if (!light.has_map_from_world()) continue;
     const absl::StatusOr<Eigen::Matrix4d> map =
         MatrixFromProto(light.map_from_world(), "mapFromWorld");
-    if (map.ok()) maps[i] = *map;
+    const absl::StatusOr<Border> border = BorderFromProto(light.border(), "border");
+    if (map.ok() && border.ok()) maps[i] = {*map, *border};
   }
   return maps;
 }

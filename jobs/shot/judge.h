@@ -16,7 +16,12 @@
 
 namespace lightfit {
 
-using LightMaps = std::vector<std::optional<Eigen::Matrix4d>>;  // map_from_world, by light
+// By light: its matrix, and what look-ups outside the map find.
+struct LightMap {
+  Eigen::Matrix4d map_from_world;
+  Border border = Border::kLit;
+};
+using LightMaps = std::vector<std::optional<LightMap>>;
 
 // Reads and checks the frame.
 absl::StatusOr<ReadbackFile> ReadFrame(const ShotFrame& frame, absl::Span<const Light> lights);
@@ -53,7 +58,8 @@ struct FrameBefore {
   LightMaps maps;
 };
 
-// Energies and footprints become those of EvaluateMatrix(), by one measure for all modes.
+// Energies and footprints become those of EvaluateMatrix(), by one measure for all modes: over the
+// edges that a map with the matrix's border serves.
 std::vector<absl::StatusOr<ShotFit>> JudgeFits(
     const ShotJob& job,
     const FrameViews& views,

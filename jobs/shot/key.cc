@@ -53,7 +53,9 @@ std::string JsonOrError(const google::protobuf::Message& message) {
 std::string ReadingText(const ReadbackExrOptions& exr) {
   const std::string channels = absl::StrJoin({absl::string_view(exr.depth_channel),
                                               absl::string_view(exr.shadow_channel_format),
-                                              absl::string_view(exr.shadow_bits_channel)},
+                                              absl::string_view(exr.shadow_bits_channel),
+                                              absl::string_view(exr.facing_channel_format),
+                                              absl::string_view(exr.mapped_channel_format)},
                                              "\n");
   return absl::StrFormat("%d\n%s\n%s\n%.17g %.17g %.17g\n%s",
                          static_cast<int>(exr.depth_kind),

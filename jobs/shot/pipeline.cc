@@ -108,9 +108,13 @@ class FramePipeline {
   TrackedMatrices FitAll(const FrameViews& views) const {
     TrackedMatrices fits;
     for (size_t i = 0; i < job_.lights.size(); ++i) {
-      absl::StatusOr<LightMatrix> matrix = views[i].ok()
-                                               ? FitLight(*views[i], job_.map, job_.fit())
-                                               : absl::StatusOr<LightMatrix>(views[i].status());
+      absl::StatusOr<LightMatrix> matrix =
+          views[i].ok() ? absl::UnknownError("not fitted") : views[i].status();
+      if (views[i].ok()) {
+        matrix = job_.fit().border == BorderChoice::kAutomatic
+                     ? FitLight(*views.surfaces(), job_.lights[i], job_.map, job_.fit())
+                     : FitLight(*views[i], job_.map, job_.fit());
+      }
       if (matrix.ok()) {
         fits.emplace_back(TrackedMatrix{*std::move(matrix), TrackerAction::kReplaced, 0});
       } else {

@@ -121,6 +121,7 @@ std::vector<ShotRow> RowsOfResult(const ShotJob& job,
       row.error = proto.status().message();
       row.moved = Moved(mode, frame, proto.shot().action());
       if (mode == ShotMode::kTracked) row.action = ActionName(proto.shot().action());
+      row.border = proto.border() == v1::BORDER_DARK ? Border::kDark : Border::kLit;
       row.energy = proto.energies().final();
       row.footprint = {proto.footprint().rms(),
                        proto.footprint().median(),

@@ -44,6 +44,8 @@ struct ShotRow {
   std::string action;           // kTracked: TrackerActionName(), else empty
   bool moved = true;            // whether texels moved over surfaces in this frame
 
+  Border border = Border::kLit;  // of the map's sampler
+
   double energy = 0.0;
   FootprintStatistics footprint;  // read-back pixels per texel
   double wrong_share = 0.0;       // foretold, 0 ... 1

@@ -28,6 +28,7 @@ std::optional<double> EnergyRatio(const ShotRows& rows, const ShotRow& row) {
   if (row.light >= frame.size()) return std::nullopt;
   const ShotRow& best = frame[row.light];
   if (!row.error.empty() || !best.error.empty()) return std::nullopt;
+  if (row.border != best.border) return std::nullopt;  // other edges
   if (!(row.energy > 0.0) || !(best.energy > 0.0)) return std::nullopt;
   return row.energy / best.energy;
 }

@@ -11,7 +11,8 @@
 
 namespace lightfit {
 
-// Energy over that of the per-frame matrix of the same frame and light. Absent without either.
+// Energy over that of the per-frame matrix of the same frame and light. Absent without either, and
+// where their borders differ, as then they serve other edges.
 std::optional<double> EnergyRatio(const ShotRows& rows, const ShotRow& row);
 
 struct ShotTotals {

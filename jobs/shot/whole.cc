@@ -140,7 +140,8 @@ TrackedMatrices MatricesOf(const ShotJob& job, const v1::FitResult& shot) {
     TrackedMatrix tracked;
     tracked.matrix.light_name = job.lights[i].name;
     tracked.matrix.map = job.map;
-    tracked.matrix.map_from_world = *maps[i];
+    tracked.matrix.map_from_world = maps[i]->map_from_world;
+    tracked.matrix.border = maps[i]->border;
     tracked.matrix.search.stop_reason = StopReason::kNoSearch;
     matrices.push_back(std::move(tracked));
   }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "jobs/compare/json.h"
 #include "tests/cli/examples.h"
@@ -133,17 +134,19 @@ TEST_F(CompareTest, RandomLightsGiveTotals) {
   }
 }
 
-// One light without a shadow does not stop the other.
+// One light among what it lights does not stop the other.
 TEST_F(CompareTest, LightsWithoutAMatrixAreNamed) {
   const ProcessResult result = CompareScene({"--light",
-                                             "noon=sun:0,-1,0",
+                                             "among=point:0,0.2,0",
+                                             "--cover",
+                                             "receivers",
                                              "--light",
                                              "sun=sun:-1,-1.3,0.4",
                                              "--picture",
                                              folder_.Path("out.png")});
   EXPECT_EQ(result.exit_code, 3);
   EXPECT_THAT(result.err,
-              AllOf(HasSubstr("no matrix for light \"noon\""), Not(HasSubstr("sun\""))));
+              AllOf(HasSubstr("no matrix for light \"among\""), Not(HasSubstr("sun\""))));
   EXPECT_THAT(result.out, HasSubstr("2 lights"));
   EXPECT_THAT(folder_.Files(), ElementsAre("out.png", "scene.obj"));
 }
@@ -173,6 +176,72 @@ TEST_F(CompareTest, MatricesFromAFileAreFurtherRows) {
     EXPECT_EQ(light.methods(9).method(), "engine");
     EXPECT_NEAR(light.methods(9).energy_ratio(), 1, 1e-9);
   }
+}
+
+// Half of the map outside: what is there is dark, or lit.
+TEST_F(CompareTest, AMatrixFromAFileBringsItsBorder) {
+  const std::vector<std::string> sun = {"--light", "sun=sun:-1,-1.3,0.4"};
+  const auto compare = [&](std::vector<std::string> more) {
+    more.insert(more.end(), sun.begin(), sun.end());
+    more.insert(more.end(), {"--json", folder_.Path("out.json"), "--csv", folder_.Path("out.csv")});
+    return CompareScene(more);
+  };
+  ASSERT_EQ(compare({}).exit_code, 0);
+  v1::Comparison comparison = ReadComparison("out.json");
+  v1::Matrix4x4 matrix = comparison.lights(0).methods(9).map_from_world();
+  for (int column = 0; column < 4; ++column) {
+    matrix.set_m(column, matrix.m(column) + 50.0 * matrix.m(12 + column));
+  }
+  const std::string numbers = absl::StrJoin(matrix.m(), ", ");
+  for (const char* border : {"lit", "dark"}) {
+    WriteFile(folder_.Path(absl::StrCat(border, ".json")),
+              absl::StrCat("{\"map_from_world\": [", numbers, "], \"border\": \"", border, "\"}"));
+  }
+  const ProcessResult result = compare({"--matrix",
+                                        "bright=" + folder_.Path("lit.json"),
+                                        "--matrix",
+                                        "night=" + folder_.Path("dark.json")});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, AllOf(HasSubstr("  border  "), HasSubstr("    dark  ")));
+  comparison = ReadComparison("out.json");
+  const auto& methods = comparison.lights(0).methods();
+  EXPECT_EQ(methods[0].border(), v1::BORDER_LIT);
+  EXPECT_EQ(methods[9].border(), v1::BORDER_LIT);
+  EXPECT_EQ(methods[10].border(), v1::BORDER_DARK);
+  EXPECT_GT(methods[9].wrong().outside(), 0);
+  EXPECT_GT(methods[10].wrong().outside(), 2 * methods[9].wrong().outside());
+  EXPECT_THAT(ReadFile(folder_.Path("out.csv")), HasSubstr(",dark,\n"));
+}
+
+TEST_F(CompareTest, CountsAreMeansOfThePhasesAskedFor) {
+  const auto count = [this](const std::vector<std::string>& more, const char* heading) {
+    std::vector<std::string> arguments = {
+        "--light", "sun=sun:-1,-1.3,0.4", "--json", folder_.Path("out.json")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProcessResult result = CompareScene(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.out, HasSubstr(absl::StrCat("map 100 x 100 texels", heading, "\n")));
+    return ReadComparison("out.json");
+  };
+  const v1::Comparison by_default = count({}, ", mean of 4 phases");
+  EXPECT_EQ(by_default.phases(), 4);
+  const v1::Comparison one = count({"--phases", "1"}, "");
+  EXPECT_EQ(one.phases(), 1);
+  const v1::Comparison nine = count({"--phases", "9"}, ", mean of 9 phases");
+  EXPECT_EQ(nine.phases(), 9);
+  // Some tens of pixels a row: counts of one phase are off by a third, the rows together by less.
+  int num_different = 0;
+  double total_by_default = 0.0, total_of_nine = 0.0;
+  for (int row = 0; row < 10; ++row) {
+    const auto wrong = [row](const v1::Comparison& comparison) {
+      return static_cast<double>(comparison.lights(0).methods(row).wrong().ideal());
+    };
+    num_different += wrong(one) != wrong(nine);
+    total_by_default += wrong(by_default);
+    total_of_nine += wrong(nine);
+  }
+  EXPECT_NEAR(total_by_default, total_of_nine, 0.2 * total_of_nine);
+  EXPECT_GT(num_different, 5);
 }
 
 TEST_F(CompareTest, AReadbackGivesEnergiesOnly) {
@@ -216,6 +285,8 @@ TEST_F(CompareTest, WrongUsageIsExitCodeOne) {
   ExpectError(CompareScene({"--matrix", "a=x.json", "--matrix", "a=y.json"}), 1, "taken");
   ExpectError(CompareScene({"--bias", "none"}), 1, "--bias");
   ExpectError(CompareScene({"--bias-share", "-1"}), 1, "--bias-share");
+  ExpectError(CompareScene({"--phases", "3"}), 1, "phases = 3, want a square number");
+  ExpectError(CompareScene({"--phases", "81"}), 1, "81");
   ExpectError(CompareScene({"--margin-percent", "nan"}), 1, "nan");
 }
 

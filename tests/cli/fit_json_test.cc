@@ -13,6 +13,7 @@
 #include "io/readback_exr.h"
 #include "optimizer/figures/footprint_image.h"
 #include "tests/cli/examples.h"
+#include "tests/cli/summaries.h"
 #include "tests/testing/process.h"
 #include "wire/light_proto.h"
 
@@ -183,6 +184,29 @@ TEST(FitJson, ALightOfTheCommandLineReplacesItsNamesake) {
   ASSERT_TRUE(sun.ok()) << sun.status();
   EXPECT_EQ(sun->name, "sun");
   EXPECT_EQ(sun->direction, Eigen::Vector3d(0, 0, -1));
+}
+
+// The light's own, in words that a renderer can go by, and what was asked for.
+TEST(FitJson, SaysTheBorderOfEveryLight) {
+  const TemporaryFolder folder;
+  const std::string json = folder.Path("out.json");
+  const auto fit = [&](const Arguments& more) {
+    const Arguments arguments = {"fit", kYard, "--lights", kYardLights, "--json", json};
+    EXPECT_EQ(RunLightfit(Joined(arguments, more)).exit_code, 0);
+    return ReadResult(json);
+  };
+  // This read-back does not tell which surfaces face a light, so there is nothing to choose.
+  for (const auto& [more, choice] :
+       {std::pair(Arguments{}, v1::BORDER_CHOICE_AUTOMATIC),
+        std::pair(Arguments{"--border", "lit"}, v1::BORDER_CHOICE_LIT),
+        std::pair(Arguments{"--as-published"}, v1::BORDER_CHOICE_LIT)}) {
+    const v1::FitResult result = fit(more);
+    EXPECT_EQ(result.options().border(), choice);
+    for (const v1::LightResult& light : result.lights()) {
+      EXPECT_EQ(light.border(), v1::BORDER_LIT) << light.name();
+      EXPECT_EQ(light.facing(), v1::FACING_SOURCE_GUESSED) << light.name();
+    }
+  }
 }
 
 // The header's camera and Blender's own, which the scene file holds, are the same camera.

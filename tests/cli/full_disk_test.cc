@@ -31,7 +31,7 @@ class FileSizeLimit {
     getrlimit(RLIMIT_FSIZE, &old_);
     rlimit limit = old_;
     limit.rlim_cur = kRoomBytes;
-    EXPECT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0) << std::strerror(errno);
+    EXPECT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0) << "errno " << errno;
   }
   ~FileSizeLimit() {
     setrlimit(RLIMIT_FSIZE, &old_);

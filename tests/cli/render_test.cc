@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "io/lights_file.h"
+#include "io/readback_exr.h"
 #include "tests/cli/examples.h"
 #include "tests/testing/process.h"
 
@@ -50,6 +51,9 @@ TEST(Render, WritesAReadbackThatFitTakes) {
   const auto written = ReadLightsFile(lights);
   ASSERT_TRUE(written.ok()) << written.status();
   EXPECT_EQ((*written)[0].direction, Eigen::Vector3d(1, -0.6, 0.3));
+  const auto readback = ReadReadbackExr(exr, *written);
+  ASSERT_TRUE(readback.ok()) << readback.status();
+  EXPECT_EQ(readback->facing_lights, 3u);
   const std::string json = folder.Path("fit.json");
   const ProcessResult fit = RunLightfit({"fit", exr, "--lights", lights, "--json", json});
   EXPECT_EQ(fit.exit_code, 0) << fit.err;

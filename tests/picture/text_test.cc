@@ -140,9 +140,9 @@ TEST_F(TypefaceTest, EveryCharacterAndAnyBytesLeaveThePageWhole) {
 // Whatever the user's fontconfig says: a machine without one draws the same.
 TEST_F(TypefaceTest, NeedsNoFontconfig) {
   const Image before = Drawn("Schlüssel");
-  setenv("FONTCONFIG_FILE", "/nowhere", 1);
+  setenv("FONTCONFIG_FILE", "/nowhere", 1);  // NOLINT(concurrency-mt-unsafe)
   const Typeface again = Typeface::Find();
-  unsetenv("FONTCONFIG_FILE");
+  unsetenv("FONTCONFIG_FILE");  // NOLINT(concurrency-mt-unsafe)
   Canvas canvas(400, 40, {});
   again.Draw(10, 25, "Schlüssel", kStyle, &canvas);
   EXPECT_TRUE(IsSame(canvas.ToImage(), before));
@@ -151,9 +151,9 @@ TEST_F(TypefaceTest, NeedsNoFontconfig) {
 TEST_F(TypefaceTest, PassesOverAFileThatIsNoFont) {
   const TemporaryFolder folder;
   WriteFile(folder.Path("a.ttf"), "not a font");
-  setenv("LIGHTFIT_FONT", folder.Path("a.ttf").c_str(), 1);
+  setenv("LIGHTFIT_FONT", folder.Path("a.ttf").c_str(), 1);  // NOLINT(concurrency-mt-unsafe)
   const Typeface typeface = Typeface::Find();
-  unsetenv("LIGHTFIT_FONT");
+  unsetenv("LIGHTFIT_FONT");  // NOLINT(concurrency-mt-unsafe)
   ASSERT_TRUE(typeface.found());
   EXPECT_EQ(typeface.Width("sun", kStyle), typeface_.Width("sun", kStyle));
 }

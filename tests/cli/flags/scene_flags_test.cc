@@ -45,6 +45,14 @@ TEST(ParseGenerator, ReadsSettingsInAnyOrder) {
   EXPECT_EQ(options->num_triangles, 2000);
   EXPECT_EQ(options->seed, 18446744073709551615ULL);
   EXPECT_EQ(options->num_objects, 40);
+  const auto room = ParseGenerator("generate:kind=room,seed=5,triangles=30000");
+  ASSERT_THAT(room, IsOk());
+  EXPECT_EQ(room->kind, SceneKind::kRoom);
+  EXPECT_EQ(room->num_triangles, 30000);
+  EXPECT_EQ(options->kind, SceneKind::kFloor);
+  EXPECT_THAT(ParseGenerator("generate:kind=attic"), StatusIs(kInvalid, HasSubstr("attic")));
+  EXPECT_THAT(ParseGenerator("generate:floor=5,kind=room"),
+              StatusIs(kInvalid, HasSubstr("no setting \"floor\"")));
   EXPECT_THAT(ParseGenerator("generate:triangels=5"),
               StatusIs(kInvalid, HasSubstr("did you mean \"triangles\"")));
   EXPECT_THAT(ParseGenerator("generate:objects=many"), StatusIs(kInvalid, HasSubstr("many")));

@@ -77,6 +77,36 @@ TEST(CompareReport, CrawlHasColumnsOnlyWhereItIsMeasured) {
   EXPECT_THAT(CompareCsv(lights), HasSubstr(",0.25,0,0,200,3,4,"));
 }
 
+TEST(CompareReport, SaysThatCountsAreMeans) {
+  CompareHeading heading = Heading();
+  EXPECT_THAT(CompareReportText(heading, ThreeLights(), false), Not(HasSubstr("mean of")));
+  heading.phases = 4;
+  const std::string text = CompareReportText(heading, ThreeLights(), false);
+  EXPECT_THAT(text, HasSubstr("map 400 x 400 texels, mean of 4 phases\n"));
+  EXPECT_THAT(text, HasSubstr("means of 4 phases: of the map moved by parts of a texel"));
+  heading.screen_width = 0;  // a read-back alone has no counts
+  EXPECT_THAT(CompareReportText(heading, ThreeLights(), false), Not(HasSubstr("phases")));
+}
+
+TEST(CompareReport, ShowsBordersWhereAnyIsDark) {
+  std::vector<LightComparison> lights = ThreeLights();
+  EXPECT_THAT(CompareReportText(Heading(), lights, true), Not(HasSubstr("dark")));
+  lights[0].maps[1].border = Border::kDark;
+  const std::string one = CompareReportText(Heading(), {lights[0]}, false);
+  EXPECT_THAT(one, HasSubstr("method    border "));
+  EXPECT_THAT(one, HasSubstr("focused      lit "));
+  EXPECT_THAT(one, HasSubstr("lightfit    dark "));
+  EXPECT_THAT(one, HasSubstr("Border: "));
+  EXPECT_THAT(one, Not(HasSubstr("Dark: ")));
+  const std::string totals = CompareReportText(Heading(), lights, false);
+  EXPECT_THAT(totals, HasSubstr("counted  failed  dark\n"));
+  EXPECT_THAT(totals, HasSubstr("        2       1     0\n"));  // focused
+  EXPECT_THAT(totals, HasSubstr("        3       0     1\n"));  // lightfit
+  EXPECT_THAT(totals, HasSubstr("Dark: "));
+  EXPECT_THAT(CompareCsv(lights), HasSubstr(",dark,\n"));
+  EXPECT_THAT(CompareCsv(lights), HasSubstr(",lit,\n"));
+}
+
 // Splits a line at the commas outside quotes.
 std::vector<std::string> Fields(const std::string& line) {
   std::vector<std::string> fields(1);

@@ -74,10 +74,10 @@ TEST_F(ThreeFrames, CsvLeavesOutWhatIsNotThere) {
   const std::vector<std::string> lines = absl::StrSplit(ShotCsv(job_, rows_), '\n');
   ASSERT_EQ(lines.size(), 8u);  // names, six rows, the end
   EXPECT_THAT(lines[0], StartsWith("mode,frame,number,light,"));
-  EXPECT_EQ(lines[1], "per-frame,walk,10,\"sun, \"\"low\"\"\",ok,,4,1,1.5,1,3,0.001,,,");
+  EXPECT_EQ(lines[1], "per-frame,walk,10,\"sun, \"\"low\"\"\",ok,,4,1,1.5,1,3,0.001,,,lit,");
   EXPECT_EQ(lines[2],
-            "per-frame,walk,11,\"sun, \"\"low\"\"\",failed,,,,,,,,0.4,0.2,\"no edge, none\"");
-  EXPECT_EQ(lines[5], "tracked,walk,11,\"sun, \"\"low\"\"\",ok,kept,2,,1.5,1,3,0.002,0,,");
+            "per-frame,walk,11,\"sun, \"\"low\"\"\",failed,,,,,,,,0.4,0.2,,\"no edge, none\"");
+  EXPECT_EQ(lines[5], "tracked,walk,11,\"sun, \"\"low\"\"\",ok,kept,2,,1.5,1,3,0.002,0,,lit,");
 }
 
 TEST_F(ThreeFrames, PlotHasTheColoursOfItsModes) {
