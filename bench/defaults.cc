@@ -36,6 +36,7 @@ struct Arguments {
   int num_lights = 30;
   uint64_t seed = 7;
   int readback = 180;
+  JudgeOptions judge = {.phases = 4};
   std::string folder = DefaultSceneFolder();
   std::string csv_path;
 };
@@ -43,6 +44,7 @@ struct Arguments {
 struct Variant {
   std::string name;
   FitOptions options;
+  bool knows_facing = true;
 };
 
 std::vector<Variant> Variants() {
@@ -52,6 +54,9 @@ std::vector<Variant> Variants() {
     change(variants.back().options);
   };
   add("cover: all receivers", [](FitOptions& o) { o.cover = Cover::kReceivers; });
+  add("border: dark", [](FitOptions& o) { o.border = BorderChoice::kDark; });
+  add("border: automatic", [](FitOptions& o) { o.border = BorderChoice::kAutomatic; });
+  variants.push_back({"no third state", FitOptions(), /*knows_facing=*/false});
   add("metric: l2", [](FitOptions& o) { o.metric = Metric::kL2; });
   add("metric: l2 across the edge", [](FitOptions& o) { o.metric = Metric::kL2AcrossEdge; });
   add("metric: l1", [](FitOptions& o) { o.metric = Metric::kL1; });
@@ -101,14 +106,17 @@ absl::StatusOr<Measured> Measure(const CompareStage& stage,
                                  const ReadbackImage& readback,
                                  const std::vector<Lighting>& truth,
                                  const Light& light,
-                                 const FitOptions& options) {
-  const absl::StatusOr<LightMatrix> fit = FitLight(readback.View(), light, kMap, options);
+                                 const Variant& variant,
+                                 const JudgeOptions& judge) {
+  Readback view = readback.View();
+  if (!variant.knows_facing) view.facing_bits = {};
+  const absl::StatusOr<LightMatrix> fit = FitLight(view, light, kMap, variant.options);
   if (!fit.ok()) return fit.status();
-  const absl::StatusOr<ShadowImage> image =
-      JudgeMatrix(*stage.caster, stage.screen, truth, light, fit->map_from_world, kMap);
+  const absl::StatusOr<ShadowImage> image = JudgeMatrix(
+      *stage.caster, stage.screen, truth, light, {fit->map_from_world, kMap, fit->border}, judge);
   if (!image.ok()) return image.status();
   const absl::StatusOr<double> share =
-      ForetellWrongShare(readback.View(), light, fit->map_from_world, kMap);
+      ForetellWrongShare(view, light, fit->map_from_world, kMap, {}, fit->border);
   if (!share.ok()) return share.status();
   return Measured{static_cast<double>(image->wrong.ideal),
                   static_cast<double>(image->wrong.practical),
@@ -138,7 +146,7 @@ absl::Status MeasureScene(size_t index,
     LightRow row = {scene.name, lights[i].name, IsForTuning(index), {}};
     for (const Variant& variant : variants) {
       const absl::StatusOr<Measured> measured =
-          Measure(stage, *readback, truth, lights[i], variant.options);
+          Measure(stage, *readback, truth, lights[i], variant, arguments.judge);
       if (!measured.ok()) break;  // no shadow in view, or receivers all around: no row
       row.measured.push_back(*measured);
     }
@@ -263,6 +271,7 @@ absl::Status WriteCsv(const std::string& path,
 }
 
 absl::Status Run(const Arguments& arguments) {
+  if (absl::Status status = ValidateJudgeOptions(arguments.judge); !status.ok()) return status;
   const std::vector<Variant> variants = Variants();
   std::vector<LightRow> rows;
   {
@@ -301,6 +310,10 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): options
   app.add_option("--readback", arguments.readback, "Side of the read-back, pixels")
       ->capture_default_str();
   app.add_option("--scenes", arguments.folder, "Folder with the scene files")
+      ->capture_default_str();
+  app.add_option("--phases",
+                 arguments.judge.phases,
+                 "That wrong pixels are means over, JudgeOptions::phases")
       ->capture_default_str();
   app.add_option("--csv", arguments.csv_path, "One row per light and alternative");
   CLI11_PARSE(app, argc, argv);

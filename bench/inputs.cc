@@ -39,7 +39,12 @@ std::vector<std::filesystem::path> ListSets(const std::string& folder) {
 
 }  // namespace
 
-Readback Input::View() const { return {camera, depth, depth_kind, shadow_bits}; }
+Readback Input::View() const {
+  Readback view = {camera, depth, depth_kind, shadow_bits};
+  view.facing_bits = facing_bits;
+  view.facing_lights = facing_lights;
+  return view;
+}
 
 Input BoxInput(uint64_t seed, int width, int height, int num_lights) {
   const BoxScene scene = MakeBoxScene(seed);
@@ -67,6 +72,8 @@ absl::StatusOr<Input> ReadInput(const std::string& set_folder, const std::string
   input.depth_kind = file->depth_kind;
   input.depth = std::move(file->depth);
   input.shadow_bits = std::move(file->shadow_bits);
+  input.facing_bits = std::move(file->facing_bits);
+  input.facing_lights = file->facing_lights;
   for (size_t i = 0; i < lights->size(); ++i) {
     if (file->light_status[i].ok()) input.lights.push_back((*lights)[i]);
   }

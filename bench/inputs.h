@@ -21,6 +21,8 @@ struct Input {
   DepthKind depth_kind = DepthKind::kCameraZ;
   std::vector<float> depth;
   std::vector<uint32_t> shadow_bits;
+  std::vector<uint32_t> facing_bits;  // of the lights in `facing_lights`; empty: of none
+  uint32_t facing_lights = 0;
   std::vector<Light> lights;  // those whose shadow could be read
 
   // Refers to this object's buffers.

@@ -15,7 +15,7 @@ absl::StatusOr<MatrixCheck> MatrixCheck::Create(const Readback& readback,
                                                 const SampleOptions& options) {
   absl::StatusOr<Surfaces> surfaces =
       FindSurfaces(readback, uint32_t{1} << light.shadow_bit, options);
-  if (!receivers.ok()) return surfaces.status();
+  if (!surfaces.ok()) return surfaces.status();
   MatrixCheck check;
   // The right inverse of ray_from_world, whose first three columns have orthonormal rows or, for a
   // directional light, two of them and the world point's fourth coordinate.
@@ -36,7 +36,7 @@ absl::StatusOr<MatrixCheck> MatrixCheck::Create(const Readback& readback,
       const double depth = readback.depth[pixel];
       if (!affine_depth.IsSurface(depth)) continue;
       const Eigen::Vector4d screen(x + 0.5, y + 0.5, affine_depth.At(x, y, depth), 1.0);
-      check.surfaces_.emplace_back((world_from_screen * screen).hnormalized());
+      check.receivers_.emplace_back((world_from_screen * screen).hnormalized());
     }
   }
   return check;
@@ -48,7 +48,7 @@ MatrixQuality MatrixCheck::Measure(const Eigen::Matrix4d& map_from_world, MapSiz
 
   MatrixQuality quality;
   quality.energy = Energy(rows * world_from_ray_, samples_, MetricWeights());
-  for (const Eigen::Vector3d& receiver : surfaces_) {
+  for (const Eigen::Vector3d& receiver : receivers_) {
     const Eigen::Vector3d p = rows * receiver.homogeneous();
     if (!(p.z() > 0.0)) {
       quality.outside_texels = std::numeric_limits<double>::infinity();

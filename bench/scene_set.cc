@@ -3,12 +3,11 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <random>
 
 #include "absl/strings/str_format.h"
 #include "render/clearance.h"
+#include "render/generator/dice.h"
 #include "render/scene_file.h"
-#include "render/scene_generator.h"
 
 namespace lightfit {
 
@@ -21,9 +20,12 @@ Eigen::AlignedBox3d Box(const Eigen::Vector3d& low, const Eigen::Vector3d& high)
 }
 
 SceneCase Generated(const char* name, uint64_t seed) {
+  SceneGeneratorOptions options;
+  options.seed = seed;
+  options.num_triangles = kGeneratedTriangles;
   return {name,
           "",
-          seed,
+          options,
           {{{0.0, 1.7, 18.0}, {0.0, 0.5, 0.0}, 60.0},
            {{-14.0, 3.0, 12.0}, {0.0, 0.5, 0.0}, 60.0},
            {{12.0, 6.0, -14.0}, {0.0, 0.0, 0.0}, 50.0}},
@@ -34,10 +36,29 @@ SceneCase Generated(const char* name, uint64_t seed) {
           Box({-10.0, 4.0, -10.0}, {10.0, 10.0, 10.0})};
 }
 
+// Suns come in by the windows towards -x.
+SceneCase GeneratedRoom(const char* name, uint64_t seed) {
+  SceneGeneratorOptions options;
+  options.kind = SceneKind::kRoom;
+  options.seed = seed;
+  options.num_triangles = kGeneratedTriangles;
+  return {name,
+          "",
+          options,
+          {{{2.3, 1.6, 3.3}, {-1.2, 0.7, -1.5}, 65.0},
+           {{-2.2, 1.6, 3.3}, {1.2, 0.8, -2.0}, 65.0},
+           {{2.3, 1.6, -3.3}, {-1.0, 0.6, 1.5}, 70.0}},
+          15.0,
+          50.0,
+          130.0,
+          230.0,
+          Box({-2.0, 2.0, -3.0}, {2.0, 2.55, 3.0})};
+}
+
 std::vector<SceneCase> MakeSceneCases() {
   return {{"sponza_atrium",
            "sponza_atrium.glb",
-           0,
+           {},
            {{{-11.5, 1.7, 0.3}, {6.0, 4.5, -0.3}, 60.0},
             {{9.5, 6.6, 3.9}, {-6.0, 4.0, -2.5}, 65.0},
             {{3.5, 1.7, -4.2}, {-9.0, 2.2, -4.4}, 55.0}},
@@ -48,7 +69,7 @@ std::vector<SceneCase> MakeSceneCases() {
            Box({-9.0, 3.0, -1.2}, {8.0, 8.5, 1.2})},
           {"denhaag_city",
            "denhaag_city.glb",
-           0,
+           {},
            {{{-90.8, 8.0, 127.9}, {-103.0, 8.7, 100.4}, 65.0},
             {{106.5, 5.5, 141.1}, {81.5, 5.3, 124.5}, 65.0},
             {{-200.0, 90.0, 250.0}, {120.0, 0.0, -120.0}, 50.0}},
@@ -59,7 +80,7 @@ std::vector<SceneCase> MakeSceneCases() {
            Box({-120.0, 24.0, 100.0}, {120.0, 38.0, 160.0})},
           {"forest_valley",
            "forest_valley.glb",
-           0,
+           {},
            {{{-18.7, 1.8, -89.0}, {-21.0, 3.0, -59.0}, 65.0},
             {{-22.5, 1.8, -33.0}, {-33.3, 3.4, -61.0}, 65.0},
             {{60.0, 25.0, 120.0}, {0.0, 4.0, 0.0}, 50.0}},
@@ -70,7 +91,7 @@ std::vector<SceneCase> MakeSceneCases() {
            Box({-60.0, 8.0, -90.0}, {60.0, 25.0, 60.0})},
           {"objects_floor",
            "objects_floor.glb",
-           0,
+           {},
            {{{3.0, 1.8, -3.2}, {-0.4, 0.4, 0.2}, 55.0},
             {{-3.6, 0.7, 0.4}, {1.0, 0.6, 0.0}, 60.0},
             {{0.2, 5.5, 0.4}, {0.0, 0.0, 0.0}, 50.0}},
@@ -81,7 +102,7 @@ std::vector<SceneCase> MakeSceneCases() {
            Box({-4.0, 2.0, -4.0}, {4.0, 5.0, 4.0})},
           {"hotel_room",
            "hotel_room.glb",
-           0,
+           {},
            {{{-2.5, 1.6, -3.0}, {2.0, 0.8, 2.0}, 65.0},
             {{-1.7, 1.5, 1.3}, {-0.4, 1.2, -2.4}, 70.0},
             {{-1.5, 1.5, -4.1}, {-1.7, 1.2, 0.0}, 70.0}},
@@ -92,7 +113,7 @@ std::vector<SceneCase> MakeSceneCases() {
            Box({-2.6, 1.7, -4.2}, {-0.5, 2.05, 1.5})},
           {"shadow_columns",
            "shadow_columns.glb",
-           0,
+           {},
            {{{-228.0, 3.0, 6.0}, {0.0, 2.0, 0.0}, 55.0},
             {{-60.0, 8.0, 18.0}, {60.0, 1.0, -4.0}, 60.0},
             {{10.0, 2.0, -8.0}, {60.0, 3.0, 6.0}, 65.0}},
@@ -102,19 +123,10 @@ std::vector<SceneCase> MakeSceneCases() {
            360.0,
            Box({-220.0, 8.0, -20.0}, {220.0, 25.0, 20.0})},
           Generated("generated_2", 2),
-          Generated("generated_3", 3)};
+          Generated("generated_3", 3),
+          GeneratedRoom("generated_room_5", 5),
+          GeneratedRoom("generated_room_6", 6)};
 }
-
-class Dice {
- public:
-  explicit Dice(uint64_t seed) : engine_(seed) {}
-  double Uniform(double low, double high) {
-    return low + (high - low) * 0x1p-53 * static_cast<double>(engine_() >> 11);
-  }
-
- private:
-  std::mt19937_64 engine_;
-};
 
 }  // namespace
 
@@ -131,10 +143,7 @@ std::string DefaultSceneFolder() {
 
 absl::StatusOr<RayCaster> LoadSceneCase(const SceneCase& scene, const std::string& folder) {
   if (scene.file.empty()) {
-    SceneGeneratorOptions options;
-    options.seed = scene.generator_seed;
-    options.num_triangles = kGeneratedTriangles;
-    absl::StatusOr<Scene> generated = GenerateScene(options);
+    absl::StatusOr<Scene> generated = GenerateScene(scene.generated);
     if (!generated.ok()) return generated.status();
     return RayCaster::Build(*std::move(generated));
   }

@@ -15,6 +15,7 @@
 #include "absl/status/statusor.h"
 #include "geometry/light.h"
 #include "jobs/compare/stage.h"
+#include "render/generator/scene_generator.h"
 #include "render/ray_caster.h"
 
 namespace lightfit {
@@ -26,8 +27,8 @@ struct SceneView {
 
 struct SceneCase {
   std::string name;
-  std::string file;  // under the folder; empty: generated with `generator_seed`
-  uint64_t generator_seed = 0;
+  std::string file;  // under the folder; empty: generated
+  SceneGeneratorOptions generated = {};
   std::vector<SceneView> views;
   // Suns are drawn uniformly in elevation and azimuth, degrees.
   double min_elevation_deg, max_elevation_deg, min_azimuth_deg, max_azimuth_deg;
