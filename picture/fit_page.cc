@@ -9,6 +9,7 @@
 #include "base/number.h"
 #include "geometry/affine_depth.h"
 #include "optimizer/figures/footprint_image.h"
+#include "optimizer/readback/needed_surfaces.h"
 #include "picture/color_map.h"
 #include "picture/heat_panel.h"
 #include "picture/map_panel.h"
@@ -70,15 +71,18 @@ Layout LayoutFor(const Readback& readback) {
 }
 
 // The roles of the pixels that are receivers, in the order of ReceiverPositions().
-std::vector<ReceiverRole> RolesOfReceivers(const Readback& readback,
+std::vector<ReceiverRole> RolesOfReceivers(const Surfaces& surfaces,
                                            const Light& light,
+                                           Border border,
                                            const std::vector<uint8_t>& samples) {
+  const Readback& readback = surfaces.readback;
   const AffineDepth depth(readback.camera, readback.depth_kind);
+  const NeededSurfaces needed(surfaces, light, border);
   std::vector<ReceiverRole> roles;
   for (size_t pixel = 0; pixel < samples.size(); ++pixel) {
     if (!depth.IsSurface(readback.depth[pixel])) continue;
-    const bool is_shadowed = ((readback.shadow_bits[pixel] >> light.shadow_bit) & 1u) != 0;
-    roles.push_back({is_shadowed, samples[pixel] != 0});
+    const bool needs_room = ((needed.words()[pixel] >> light.shadow_bit) & 1u) != 0;
+    roles.push_back({needs_room, samples[pixel] != 0});
   }
   return roles;
 }
@@ -95,12 +99,13 @@ absl::StatusOr<Row> MakeRow(const Surfaces& surfaces,
   absl::StatusOr<std::vector<uint8_t>> samples = SampleImage(surfaces, light.light, options);
   if (!samples.ok()) return samples.status();
   row.samples = *std::move(samples);
-  const std::vector<ReceiverRole> roles = RolesOfReceivers(readback, light.light, row.samples);
-  if (roles.size() != receivers.size()) {
-    return absl::InternalError("picture: receivers and surface pixels differ in number");
-  }
   const auto panels_of = [&](const JudgedMatrix& map_of_light) -> absl::StatusOr<Panels> {
     const Eigen::Matrix4d& matrix = map_of_light.matrix.map_from_world;
+    const std::vector<ReceiverRole> roles =
+        RolesOfReceivers(surfaces, light.light, map_of_light.matrix.border, row.samples);
+    if (roles.size() != receivers.size()) {
+      return absl::InternalError("picture: receivers and surface pixels differ in number");
+    }
     absl::StatusOr<std::vector<float>> footprints =
         FootprintImage(readback, light.light, matrix, options);
     if (!footprints.ok()) return footprints.status();
@@ -196,8 +201,10 @@ class Page {
     const auto draw = [&](int column,
                           const std::string& heat_title,
                           const std::string& map_title,
-                          const Figures& figures,
+                          const JudgedMatrix& judged,
                           const Panels& panels) {
+      const Figures& figures = judged.figures;
+      const bool is_dark = judged.matrix.border == Border::kDark;
       PanelHeader(layout_.HeatX(column),
                   heat_title,
                   absl::StrFormat("%s %% of the image wrong; texel footprint: rms %s, 99 %% %s px",
@@ -210,19 +217,20 @@ class Page {
           DrawHeatPanel(readback, light.light, panels.footprints, row.samples, scale));
       PanelHeader(layout_.MapX(column),
                   map_title,
-                  absl::StrFormat("the shadows' hull fills %.0f %% of the map",
+                  absl::StrFormat("%s hull fills %.0f %% of the map",
+                                  is_dark ? "dark border; the lit surfaces'" : "the shadows'",
                                   100 * panels.view.hull_share));
       canvas_.DrawCanvas(layout_.MapX(column),
                          panels_y,
                          DrawMapPanel(panels.view, map, layout_.map_panel, typeface_));
     };
     if (row.before.has_value()) {
-      draw(0, "Before: focused map", "Map before", light.focused->figures, *row.before);
+      draw(0, "Before: focused map", "Map before", *light.focused, *row.before);
     } else {
       PanelHeader(
           layout_.HeatX(0), "Before: none", "the focused map would have to look all around");
     }
-    draw(1, absl::StrCat("After: ", final_label), "Map after", light.final->figures, row.after);
+    draw(1, absl::StrCat("After: ", final_label), "Map after", *light.final, row.after);
     Text(layout_.BarX(), panels_y - 10, "px / texel", {.size_px = 13, .color = kFaintTextColor});
     DrawColorBar(layout_.BarX(), panels_y, layout_.heat.height, scale, typeface_, &canvas_);
     y_ = panels_y + layout_.panel_height + kRowGap;
@@ -239,7 +247,7 @@ class Page {
           std::pair{kUnratedColor, "not rated: turned away or edge-on"},
           std::pair{kReceiverColor, "visible surface in the map"},
           std::pair{kSampleColor, "shadow edge in the map"},
-          std::pair{kHullColor, "hull of the shadowed surface"}}) {
+          std::pair{kHullColor, "hull of what needs room"}}) {
       canvas_.FillRectangle(x, y_ + 3, 14, 14, color);
       const TextStyle style = {.size_px = kCaptionSize, .color = kTextColor};
       Text(x + 21, y_ + 15, text, style);

@@ -76,7 +76,7 @@ MapView ViewMap(absl::Span<const Eigen::Vector3d> receivers_in_world,
                 const Eigen::Matrix4d& map_from_world,
                 MapSize map) {
   MapView view;
-  std::vector<Eigen::Vector2d> shadowed;
+  std::vector<Eigen::Vector2d> needed;
   view.receivers.reserve(receivers_in_world.size());
   for (size_t i = 0; i < receivers_in_world.size(); ++i) {
     const Eigen::Vector4d x_in_map = map_from_world * receivers_in_world[i].homogeneous();
@@ -84,9 +84,9 @@ MapView ViewMap(absl::Span<const Eigen::Vector3d> receivers_in_world,
     const Eigen::Vector2d texel = x_in_map.head<2>() / x_in_map.w();
     view.receivers.push_back(texel);
     if (roles[i].is_sample) view.samples.push_back(texel);
-    if (roles[i].is_shadowed) shadowed.push_back(texel);
+    if (roles[i].needs_room) needed.push_back(texel);
   }
-  view.hull = ConvexHull(shadowed);
+  view.hull = ConvexHull(needed);
   view.hull_share = Area(view.hull) / (static_cast<double>(map.width) * map.height);
   return view;
 }

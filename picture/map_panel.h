@@ -20,13 +20,13 @@ namespace lightfit {
 struct MapView {
   std::vector<Eigen::Vector2d> receivers;  // texels
   std::vector<Eigen::Vector2d> samples;    // texels
-  Polygon hull;                            // convex hull of the shadowed receivers, texels
+  Polygon hull;                            // convex hull of the receivers that need room, texels
   double hull_share = 0;                   // of the map's area
 };
 
-// What the light's shadow has to do with a receiver.
+// What a receiver is to the light's map.
 struct ReceiverRole {
-  bool is_shadowed = false;
+  bool needs_room = false;  // the map's border would answer it wrongly
   bool is_sample = false;
 };
 
