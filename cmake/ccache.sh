@@ -1,14 +1,10 @@
 #!/bin/sh
-# cmake/ccache.sh COMPILER ARGUMENT...: compiles through ccache, in the build folder.
+# cmake/ccache.sh COMPILER ARGUMENT...: compiles through ccache, but for clang's precompiled headers.
 #
-# A clone in another folder finds the objects of this one only if nothing on the command line names
-# the folder. ccache says paths from the build folder for options that it knows, which CMake's
-# `-Xclang -include-pch -Xclang PATH` is not; so paths below it are said that way before.
-remaining=$#
-while [ "$remaining" -gt 0 ]; do
-  argument=$1
-  shift
-  set -- "$@" "${argument#"$PWD"/}"
-  remaining=$((remaining - 1))
+# These name the files that they were made of with their folder. One that ccache had kept from a
+# clone in another folder would be given out in this one, and clang then looks for files that may
+# not be there any more.
+for argument in "$@"; do
+  if [ "$argument" = -emit-pch ]; then exec "$@"; fi
 done
 exec ccache "$@"
