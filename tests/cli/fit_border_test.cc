@@ -49,7 +49,7 @@ TEST_F(FitHall, WithACoverReadbackHasATableWithBorders) {
   ASSERT_EQ(result.exit_code, 0);
   EXPECT_THAT(result.out,
               AllOf(HasSubstr("light  border "), HasSubstr("far outside"), HasSubstr("Border: ")));
-  EXPECT_THAT(result.out, HasSubstr("within a factor of 1.6 of the foretold one.\n"));
+  EXPECT_THAT(result.out, HasSubstr("within a factor of 1.8 of the foretold one.\n"));
   std::map<std::string, std::string> borders;
   for (const absl::string_view line : absl::StrSplit(result.out, '\n')) {
     const std::vector<std::string> cells = absl::StrSplit(line, ' ', absl::SkipEmpty());

@@ -162,7 +162,7 @@ TEST(FitReport, SaysSameWhereForecastsCannotTellMapsApart) {
 TEST(FitReport, SaysHowGoodForecastsAreAndWhatWouldMakeThemBetter) {
   const std::vector<FitComparison> comparisons = {Fitted("sun", 0.03, 0.02, 0.01)};
   for (const auto& [side, with, without] :
-       {std::tuple(180, "1.6", "2.5"), std::tuple(360, "1.5", "1.7")}) {
+       {std::tuple(180, "1.8", "2.3"), std::tuple(360, "1.8", "2.3")}) {
     const std::string begin = "On two lights of three the measured share is within a factor of ";
     const std::string known = Report(comparisons, Square(side, 1u));
     EXPECT_THAT(known, ::testing::EndsWith(begin + with + " of the foretold one.\n"));
