@@ -61,7 +61,7 @@ absl::StatusOr<double> ForetellWrongShare(const Readback& readback,
       readback.KnowsFacing(light.shadow_bit)
           ? ForetellByState(readback, light, *footprints, map, counted)
           : ForetellByBits(readback, light, *footprints, map, counted);
-  if (!share.ok()) return share;
+  if (!share.ok()) return share.status();
   return std::min(*share + outside.value_or(0.0), 1.0);
 }
 
