@@ -11,19 +11,11 @@
 #include "base/scratch.h"
 #include "base/stop.h"
 #include "geometry/affine_depth.h"
+#include "optimizer/figures/forecast_places.h"
 
 namespace lightfit {
 
 namespace {
-
-// Large read-backs are looked at on a grid of about this many pixels.
-constexpr int kMostPixels = 1 << 16;
-// Places of the texel's centre in each direction, evenly spread.
-constexpr int kPlaces = 3;
-// A pixel belongs to the surface of another if its depth is off that one's plane by less than this
-// share of the difference, or of the slope, or of the depth.
-constexpr double kMostBend = 0.3;
-constexpr double kDepthTolerance = 1e-3;
 
 // How often a look-up is wrong, by what the read-back shows where its texel's centre lies. Measured
 // by ray casting at 750x750, pixel by pixel, over six scenes and rounded: docs/defaults.md.
@@ -157,104 +149,83 @@ class StateForecast {
     if (!pixel.has_value()) return edge_on;
 
     // Places of the pixel's plane are linear in their texel.
-    const DepthGradient& plane = pixel->gradient;
+    const PixelPlane plane = {x, y, pixel->gradient};
+    const DepthGradient& d = plane.gradient;
     Eigen::Matrix3d map_from_plane;
-    map_from_plane.col(0) = map_from_screen_.col(0) + plane.d_x * map_from_screen_.col(2);
-    map_from_plane.col(1) = map_from_screen_.col(1) + plane.d_y * map_from_screen_.col(2);
-    map_from_plane.col(2) =
-        map_from_screen_.col(3) +
-        (plane.d - plane.d_x * (x + 0.5) - plane.d_y * (y + 0.5)) * map_from_screen_.col(2);
+    map_from_plane.col(0) = map_from_screen_.col(0) + d.d_x * map_from_screen_.col(2);
+    map_from_plane.col(1) = map_from_screen_.col(1) + d.d_y * map_from_screen_.col(2);
+    map_from_plane.col(2) = map_from_screen_.col(3) +
+                            (d.d - d.d_x * (x + 0.5) - d.d_y * (y + 0.5)) * map_from_screen_.col(2);
     const Eigen::Matrix3d plane_from_map = map_from_plane.inverse();
     if (!plane_from_map.allFinite()) return edge_on;
-    double sum = 0.0;
-    for (int j = 0; j < kPlaces; ++j) {
-      for (int i = 0; i < kPlaces; ++i) {
-        const Eigen::Vector2d centre =
-            texel + Eigen::Vector2d((i + 0.5) / kPlaces - 0.5, (j + 0.5) / kPlaces - 0.5);
-        const Eigen::Vector3d place = plane_from_map * centre.homogeneous();
-        // Beyond the plane's horizon nothing of it is seen.
-        if (place.z() > 0.0) sum += WrongIfCentred(place.hnormalized(), x, y, state, plane);
-      }
-    }
-    return sum / (kPlaces * kPlaces);
+    return MeanOverPlaces([&](const Eigen::Vector2d& delta) {
+      const Eigen::Vector3d place = plane_from_map * Eigen::Vector2d(texel + delta).homogeneous();
+      // Beyond the plane's horizon nothing of it is seen.
+      return place.z() > 0.0 ? WrongIfCentred({plane, state, place.hnormalized()}) : 0.0;
+    });
   }
 
-  // How often the look-up is wrong if its texel's centre is at this place of the pixel's plane.
-  double WrongIfCentred(
-      const Eigen::Vector2d& place, int x, int y, State state, const DepthGradient& plane) const {
-    const int width = readback_.width(), height = readback_.height();
-    if (!(place.x() >= 0.0 && place.y() >= 0.0 && place.x() <= width && place.y() <= height)) {
+  // A pixel in a state, and where on the screen the centre of its texel is seen.
+  struct Look {
+    const PixelPlane& plane;
+    State state;
+    Eigen::Vector2d place;
+  };
+
+  // How often the look-up is wrong.
+  double WrongIfCentred(const Look& look) const {
+    const Eigen::Vector2d& place = look.place;
+    if (!(place.x() >= 0.0 && place.y() >= 0.0 && place.x() <= readback_.width() &&
+          place.y() <= readback_.height())) {
       return 0.0;
     }
-    const double column = std::clamp(place.x() - 0.5, 0.0, width - 1.0);
-    const double row = std::clamp(place.y() - 0.5, 0.0, height - 1.0);
-    const int left = std::min(static_cast<int>(column), width - 2);
-    const int top = std::min(static_cast<int>(row), height - 2);
     double sum = 0.0;
-    for (int j = 0; j < 2; ++j) {
-      for (int i = 0; i < 2; ++i) {
-        const double weight = (i == 1 ? column - left : 1.0 - (column - left)) *
-                              (j == 1 ? row - top : 1.0 - (row - top));
-        if (weight > 0.0) sum += weight * RateAt(left + i, top + j, place, x, y, state, plane);
-      }
-    }
+    ForEachPixelAround(readback_, place, [&](int px, int py, double weight) {
+      sum += weight * RateAt(px, py, look);
+    });
     return sum;
   }
 
-  // The same by what pixel (px, py) beside the place shows.
-  double RateAt(int px,
-                int py,
-                const Eigen::Vector2d& place,
-                int x,
-                int y,
-                State state,
-                const DepthGradient& plane) const {
+  // The same by what one pixel beside the place shows.
+  double RateAt(int px, int py, const Look& look) const {
     const State there = At(px, py);
     if (there == State::kBackground) return 0.0;
-    const bool is_dark = state == State::kDark;
+    const bool is_dark = look.state == State::kDark;
     const double d = AffineAt(px, py);
-    const double expected_rise = (px - x) * plane.d_x + (py - y) * plane.d_y;
-    const double rise = d - plane.d;
-    const double slope = std::abs(plane.d_x) + std::abs(plane.d_y);
-    if (std::abs(rise - expected_rise) <=
-        kMostBend * std::max(std::abs(rise), slope) + kDepthTolerance * std::abs(plane.d)) {
+    if (IsOnSurface(px, py, d, look.plane)) {
       if (there == State::kAway) return is_dark ? kDarkAway * root_of_lit_share_ : 0.0;
-      return there != state ? kOtherSide : 0.0;
+      return there != look.state ? kOtherSide : 0.0;
     }
-    const double expected = plane.d + expected_rise;
+    const double d_of_plane = look.plane.gradient.d + look.plane.RiseTo(px, py);
     const bool orthographic = readback_.camera.orthographic;
-    if (!orthographic && !(expected > 0.0)) return 0.0;  // beyond the plane's horizon
-    const bool is_near = orthographic ? rise < expected_rise : rise > expected_rise;
+    if (!orthographic && !(d_of_plane > 0.0)) return 0.0;  // beyond the plane's horizon
+    const bool is_near = orthographic ? d < d_of_plane : d > d_of_plane;
     if (!is_near) {
       if (there == State::kAway) return is_dark ? kDarkAwayFar * root_of_lit_share_ : 0.0;
-      return there != state && IsAdjacent(px, py, d, place, x, y, plane) ? kFarAdjacent : 0.0;
+      return there != look.state && IsAdjacent(px, py, d, look) ? kFarAdjacent : 0.0;
     }
     if (is_dark) {
       if (there == State::kAway) return kDarkAway * root_of_lit_share_;
       return there == State::kLit ? kDarkLitNear : 0.0;
     }
-    const bool is_adjacent = IsAdjacent(px, py, d, place, x, y, plane);
+    const bool is_adjacent = IsAdjacent(px, py, d, look);
     if (there == State::kLit) return is_adjacent ? kLitLitAdjacent : kLitLitJump;
     return is_adjacent ? kLitElseAdjacent : kLitElseJump;
   }
 
-  // Whether what the pixel (px, py) shows is off the plane of (x, y), along the eye's ray, by less
-  // than the place is away from (x, y).
-  bool IsAdjacent(int px,
-                  int py,
-                  double d,
-                  const Eigen::Vector2d& place,
-                  int x,
-                  int y,
-                  const DepthGradient& plane) const {
-    const auto plane_at = [&](double column, double row) {
-      return plane.d + (column - x - 0.5) * plane.d_x + (row - y - 0.5) * plane.d_y;
+  // Whether what a pixel shows is off the plane, along the eye's ray, by less than the place is
+  // away from the plane's own pixel.
+  bool IsAdjacent(int px, int py, double d, const Look& look) const {
+    const auto& [x, y, gradient] = look.plane;
+    const auto on_plane = [&](double column, double row) {
+      return World(column,
+                   row,
+                   gradient.d + (column - x - 0.5) * gradient.d_x + (row - y - 0.5) * gradient.d_y);
     };
-    const Eigen::Vector3d seen = World(px + 0.5, py + 0.5, d);
-    const Eigen::Vector3d on_plane = World(px + 0.5, py + 0.5, plane_at(px + 0.5, py + 0.5));
-    const Eigen::Vector3d centre = World(place.x(), place.y(), plane_at(place.x(), place.y()));
-    const Eigen::Vector3d pixel = World(x + 0.5, y + 0.5, plane.d);
-    return (seen - on_plane).squaredNorm() < (centre - pixel).squaredNorm();
+    const Eigen::Vector3d off = World(px + 0.5, py + 0.5, d) - on_plane(px + 0.5, py + 0.5);
+    const Eigen::Vector3d away =
+        on_plane(look.place.x(), look.place.y()) - on_plane(x + 0.5, y + 0.5);
+    return off.squaredNorm() < away.squaredNorm();
   }
 
   const Readback& readback_;
@@ -276,8 +247,7 @@ absl::StatusOr<double> ForetellByState(const Readback& readback,
                                        MapSize map,
                                        std::optional<Border> border) {
   const StateForecast forecast(readback, light, footprints, map, border);
-  const double num_pixels = static_cast<double>(readback.width()) * readback.height();
-  const int stride = std::max(1, static_cast<int>(std::ceil(std::sqrt(num_pixels / kMostPixels))));
+  const int stride = ForecastStride(readback);
   const int first = std::max(1, stride / 2);
   double sum = 0.0;
   int64_t num_looked_at = 0;
@@ -287,8 +257,8 @@ absl::StatusOr<double> ForetellByState(const Readback& readback,
     num_looked_at += std::max(0, (readback.width() - 2 - first) / stride + 1);
   }
   if (num_looked_at == 0) return 0.0;
-  const double share =
-      sum / static_cast<double>(num_looked_at) + forecast.OutsideUnseen() / num_pixels;
+  const double share = sum / static_cast<double>(num_looked_at) +
+                       forecast.OutsideUnseen() / static_cast<double>(readback.depth.size());
   return std::clamp(share, 0.0, 1.0);
 }
 

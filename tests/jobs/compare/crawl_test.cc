@@ -133,6 +133,20 @@ TEST_F(CrawlTest, AMatrixThatIsKeptHasNone) {
   EXPECT_GT(comparison.Find("lightfit")->crawl->points.moved_share, 0.5);
 }
 
+// A lamp beyond the floor before the camera's feet, which in the next frame is seen all around it.
+TEST_F(CrawlTest, RowsWithoutANextMatrixSayWhy) {
+  const CompareStage down = StageOf({3.0, 0.0, 0.0, 0.0, -70.0});
+  const absl::StatusOr<NextFrame> next = MakeNextFrame(down, StageOf({}));
+  ASSERT_THAT(next, IsOk());
+  options_.next = &*next;
+  options_.fit.cover = Cover::kReceivers;
+  const LightComparison comparison =
+      CompareMaps(down, Light::Point("lamp", {0.0, 1.0, 0.0}), options_);
+  EXPECT_THAT(comparison.lightfit().status, IsOk());
+  EXPECT_FALSE(comparison.lightfit().crawl.has_value());
+  EXPECT_THAT(comparison.lightfit().note, HasSubstr("no crawl, in the next frame: light \"lamp\""));
+}
+
 TEST_F(CrawlTest, WithoutAShadowInTheNextFrameItsMapIsTheFocusedOne) {
   // The next camera looks down at the floor before its feet, where no shadow is.
   const NextFrame next = NextOf({3.0, 0.0, 0.0, 0.0, -70.0});
