@@ -24,10 +24,10 @@
 #include "base/text_file.h"
 #include "bench/forecast_table.h"
 #include "bench/inputs.h"
+#include "bench/readback_borders.h"
 #include "bench/scene_set.h"
 #include "jobs/compare/stage.h"
 #include "methods/method.h"
-#include "optimizer/evaluate.h"
 #include "optimizer/figures/foretell.h"
 #include "optimizer/fit.h"
 #include "render/judge.h"
@@ -89,9 +89,6 @@ struct LightRow {
   bool is_for_tuning = false;
   std::vector<Measured> rows;
 };
-
-// Every second scene.
-bool IsForTuning(size_t scene) { return scene % 2 == 1; }
 
 class LightBench {
  public:
@@ -356,44 +353,6 @@ absl::Status WriteCsv(const std::string& path, const std::vector<LightRow>& rows
   return WriteTextFileAtomically(path, text);
 }
 
-// The sum of footprints across the shadow edges that a map with a dark border serves, in it over in
-// the map that is fitted without the third state, on every renderer's read-back that has it.
-absl::Status PrintReadbacks(const std::string& folder) {
-  if (!HasReadbacks(folder)) {
-    std::printf("\nread-backs left out: there is no folder %s\n", folder.c_str());
-    return absl::OkStatus();
-  }
-  const absl::StatusOr<std::vector<Input>> inputs = ReadInputs(folder, 24);
-  if (!inputs.ok()) return inputs.status();
-  std::printf("\nsum of footprints, dark border over what is fitted by shadow bits alone\n");
-  FitOptions dark;
-  dark.border = BorderChoice::kDark;
-  for (const Input& input : *inputs) {
-    for (const Light& light : input.lights) {
-      if (!input.View().KnowsFacing(light.shadow_bit)) continue;
-      Readback bits_alone = input.View();
-      bits_alone.facing_bits = {};
-      const absl::StatusOr<LightMatrix> before = FitLight(bits_alone, light, kMap);
-      const absl::StatusOr<LightMatrix> after = FitLight(input.View(), light, kMap, dark);
-      if (!before.ok() || !after.ok()) continue;  // a lamp among what it lights
-      const absl::StatusOr<Figures> figures_before =
-          EvaluateMatrix(input.View(), light, before->map_from_world, kMap, dark);
-      const absl::StatusOr<Figures> figures_after =
-          EvaluateMatrix(input.View(), light, after->map_from_world, kMap, dark);
-      if (!figures_before.ok() || !figures_after.ok()) continue;
-      std::printf(
-          "%-24s %-6s %.3f; foretold %.3f %% over %.3f %%\n",
-          input.name.c_str(),
-          light.name.c_str(),
-          figures_after->energy / figures_before->energy,
-          100.0 * figures_after->wrong_share.value_or(0.0),
-          100.0 *
-              ForetellWrongShare(input.View(), light, before->map_from_world, kMap).value_or(0.0));
-    }
-  }
-  return absl::OkStatus();
-}
-
 absl::Status Run(const Arguments& arguments) {
   std::vector<LightRow> rows;
   {
@@ -412,8 +371,9 @@ absl::Status Run(const Arguments& arguments) {
   }
   Print(rows);
   if (arguments.only.empty()) {
-    absl::Status status = PrintReadbacks(DefaultReadbackFolder());
-    if (!status.ok()) return status;
+    const absl::StatusOr<std::string> text = ReadbackBordersText(DefaultReadbackFolder(), kMap);
+    if (!text.ok()) return text.status();
+    std::printf("%s", text->c_str());
   }
   return arguments.csv_path.empty() ? absl::OkStatus() : WriteCsv(arguments.csv_path, rows);
 }

@@ -99,9 +99,6 @@ struct LightRow {
   std::vector<Measured> measured;  // by variant
 };
 
-// Every second scene.
-bool IsForTuning(size_t scene) { return scene % 2 == 1; }
-
 absl::StatusOr<Measured> Measure(const CompareStage& stage,
                                  const ReadbackImage& readback,
                                  const std::vector<Lighting>& truth,

@@ -38,6 +38,9 @@ struct SceneCase {
 
 const std::vector<SceneCase>& SceneCases();
 
+// Every second scene is there for choosing, the others for the report.
+inline bool IsForTuning(size_t scene) { return scene % 2 == 1; }
+
 // "../shared/scenes" beside the repository, or the environment's LIGHTFIT_SCENES.
 std::string DefaultSceneFolder();
 

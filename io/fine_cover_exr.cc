@@ -4,22 +4,13 @@
 #include <utility>
 
 #include "absl/strings/str_format.h"
+#include "geometry/resized_camera.h"
 #include "io/camera_exr.h"
 #include "io/exr_input.h"
 
 namespace lightfit {
 
 namespace {
-
-// A read-back's camera for an image of another size.
-Camera Resized(Camera camera, int width, int height) {
-  const Eigen::Vector3d scale(
-      static_cast<double>(width) / camera.width, static_cast<double>(height) / camera.height, 1.0);
-  camera.screen_from_camera = scale.asDiagonal() * camera.screen_from_camera;
-  camera.width = width;
-  camera.height = height;
-  return camera;
-}
 
 // Whether two cameras of the same size send the same points to the same pixels, but for what
 // single-precision attributes lose.
@@ -68,7 +59,7 @@ absl::StatusOr<FineCoverFile> ReadFineCoverExr(const std::string& path,
         readback.camera.height));
   }
   ReadbackExrOptions of_fine = options;
-  of_fine.camera = Resized(readback.camera, width, height);
+  of_fine.camera = ResizedCamera(readback.camera, width, height);
   of_fine.depth_kind = readback.depth_kind;
   const absl::StatusOr<Camera> own = ReadCameraExr(path, options.camera_exr);
   if (!options.camera.has_value() && own.ok() && !SeeTheSame(*of_fine.camera, *own)) {

@@ -13,6 +13,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
 #include "base/suggest.h"
+#include "geometry/resized_camera.h"
 #include "io/camera_file.h"
 #include "render/random_suns.h"
 #include "render/scene_file.h"
@@ -83,7 +84,7 @@ absl::StatusOr<Camera> CameraFromFile(const SceneFlags& flags, int width, int he
   constexpr double kAspectTolerance = 0.01;  // sizes are rounded to pixels
   absl::StatusOr<StatedCamera> file = ReadCameraFile(flags.camera, flags.frame);
   if (!file.ok()) return file.status();
-  Camera camera = file->camera;
+  const Camera& camera = file->camera;
   const double scale_x = static_cast<double>(width) / camera.width;
   const double scale_y = static_cast<double>(height) / camera.height;
   if (!(std::abs(scale_x / scale_y - 1.0) <= kAspectTolerance)) {
@@ -98,11 +99,7 @@ absl::StatusOr<Camera> CameraFromFile(const SceneFlags& flags, int width, int he
         width,
         std::max(1, static_cast<int>(std::lround(scale_x * camera.height)))));
   }
-  camera.screen_from_camera.row(0) *= scale_x;
-  camera.screen_from_camera.row(1) *= scale_y;
-  camera.width = width;
-  camera.height = height;
-  return camera;
+  return ResizedCamera(camera, width, height);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "geometry/affine_depth.h"
+#include "geometry/resized_camera.h"
 #include "methods/dominant_plane.h"
 #include "optimizer/figures/footprint_image.h"
 #include "optimizer/readback/surfaces.h"
@@ -77,14 +78,7 @@ absl::StatusOr<CompareStage> MakeStage(const RayCaster& caster,
   if (!image.ok()) return image.status();
   stage.screen = *std::move(image);
 
-  // The same field of view whatever the two sizes are.
-  Camera readback_camera = screen;
-  readback_camera.width = readback_width;
-  readback_camera.height = readback_height;
-  const Eigen::Vector3d scale(static_cast<double>(readback_width) / screen.width,
-                              static_cast<double>(readback_height) / screen.height,
-                              1.0);
-  readback_camera.screen_from_camera = scale.asDiagonal() * screen.screen_from_camera;
+  const Camera readback_camera = ResizedCamera(screen, readback_width, readback_height);
   image = RenderSurfaces(caster, readback_camera);
   if (!image.ok()) return image.status();
   stage.readback_surfaces = *std::move(image);

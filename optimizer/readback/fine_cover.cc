@@ -1,6 +1,7 @@
 #include "optimizer/readback/fine_cover.h"
 
 #include "absl/strings/str_format.h"
+#include "geometry/resized_camera.h"
 
 namespace lightfit {
 
@@ -32,13 +33,7 @@ int NumFineLayers(const FineCover& fine) { return fine.furthest.empty() ? 1 : 2;
 Readback FineLayer(const Readback& readback, int layer, absl::Span<const uint32_t> words) {
   const FineCover& fine = *readback.fine_cover;
   Readback finer;
-  finer.camera = readback.camera;
-  finer.camera.width = fine.columns;
-  finer.camera.height = fine.rows;
-  const Eigen::Vector3d scale(static_cast<double>(fine.columns) / readback.width(),
-                              static_cast<double>(fine.rows) / readback.height(),
-                              1.0);
-  finer.camera.screen_from_camera = scale.asDiagonal() * readback.camera.screen_from_camera;
+  finer.camera = ResizedCamera(readback.camera, fine.columns, fine.rows);
   finer.depth = layer == 0 ? fine.nearest : fine.furthest;
   finer.depth_kind = readback.depth_kind;
   finer.shadow_bits = words;
