@@ -216,15 +216,16 @@ class StateForecast {
   // Whether what a pixel shows is off the plane, along the eye's ray, by less than the place is
   // away from the plane's own pixel.
   bool IsAdjacent(int px, int py, double d, const Look& look) const {
-    const auto& [x, y, gradient] = look.plane;
+    // Centre of the plane's own pixel.
+    const double x = look.plane.x + 0.5;
+    const double y = look.plane.y + 0.5;
+    const DepthGradient& gradient = look.plane.gradient;
     const auto on_plane = [&](double column, double row) {
-      return World(column,
-                   row,
-                   gradient.d + (column - x - 0.5) * gradient.d_x + (row - y - 0.5) * gradient.d_y);
+      return World(
+          column, row, gradient.d + (column - x) * gradient.d_x + (row - y) * gradient.d_y);
     };
     const Eigen::Vector3d off = World(px + 0.5, py + 0.5, d) - on_plane(px + 0.5, py + 0.5);
-    const Eigen::Vector3d away =
-        on_plane(look.place.x(), look.place.y()) - on_plane(x + 0.5, y + 0.5);
+    const Eigen::Vector3d away = on_plane(look.place.x(), look.place.y()) - on_plane(x, y);
     return off.squaredNorm() < away.squaredNorm();
   }
 
