@@ -31,7 +31,7 @@ struct Minimum {
 
 // Evaluates `start` first, and never returns anything worse. Subplex (Rowan 1990), which compares
 // values and wants no slope; where it has converged, once more from the best point moved at random.
-// On six lights of two scenes, 200 evaluations each, it found less than CRS2, ESCH, Nelder-Mead and
+// On six lights of two scenes, 200 evaluations each, it found less than CRS2, ESCH and
 // a (1 + 1) evolution strategy, and with steps of 0.05 less than with 0.01, 0.02, 0.1 or 0.2.
 // Absent when the function stopped before the first value.
 std::optional<Minimum> Minimize(const Objective& objective,
