@@ -140,6 +140,7 @@ class Page {
     }
     const int64_t count = CountOf(map, options_.bias);
     std::string caption = absl::StrCat(count, count == 1 ? " wrong pixel" : " wrong pixels");
+    if (map.border == Border::kDark) caption += ", dark border";
     if (!is_ours && HasImage(light_.lightfit())) {
       const std::optional<double> ratio =
           RatioOf(static_cast<double>(count),

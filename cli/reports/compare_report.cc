@@ -25,7 +25,9 @@ constexpr char kPhaseLegend[] =
 constexpr char kBorderLegend[] =
     "Border: what look-ups outside the map find, light (lit) or shadow (dark). Matrices are of no "
     "use\n"
-    "with the other.\n";
+    "with the other. Where lightfit's is dark, energy and footprints are over the edges that such "
+    "a map\n"
+    "serves, of every method.\n";
 constexpr char kDarkLegend[] = "Dark: lights counted whose maps have a dark border.\n";
 constexpr char kFigureLegend[] =
     "Foretold: wrong pixels that the read-back alone lets expect, of all pixels of the image.\n"

@@ -68,6 +68,13 @@ SetUp SetUpOf(const FitOptions& options, MapSize map) {
   };
 }
 
+// What has been set up for `present` already is not set up there again.
+SetUp Known(const LitStage& present, const absl::StatusOr<RowMap>& there, const SetUp& elsewhere) {
+  return [&present, &there, elsewhere](const LitStage& frame) {
+    return &frame == &present ? there : elsewhere(frame);
+  };
+}
+
 SetUp SetUpOf(const GivenMatrices& given) {
   return [&given](const LitStage& frame) -> absl::StatusOr<RowMap> {
     const absl::StatusOr<GivenMatrix> matrix = given.Of(frame.light.name);
@@ -192,18 +199,23 @@ LightComparison CompareMaps(const CompareStage& stage,
     comparison.lighting = CountLighting(comparison.truth);
   }
   const LitStage frame = Lit(stage, light);
+  const MapSize map = options.map;
+  // First, as its border says which edges every row's figures are over.
+  const SetUp fit = SetUpOf(options.fit, map);
+  const absl::StatusOr<RowMap> fitted = fit(frame);
+  const Border border = fitted.ok() ? fitted->border : Border::kLit;
   const absl::StatusOr<LightView> view =
-      frame.surfaces->ok() ? ViewLight(**frame.surfaces, frame.light, FigureOptions(options.fit))
-                           : absl::StatusOr<LightView>(frame.surfaces->status());
+      frame.surfaces->ok()
+          ? ViewLight(**frame.surfaces, frame.light, border, FigureOptions(options.fit))
+          : absl::StatusOr<LightView>(frame.surfaces->status());
   if (view.ok()) comparison.samples = view->samples.counts;
 
   RowMaker rows(frame, view, options, &comparison);
-  const MapSize map = options.map;
   for (const Method method : AllMethods()) rows.Add(MethodName(method), SetUpOf(method, map));
   rows.Add(kAsPublishedName, SetUpOf(FitOptions::AsPublished(options.fit), map));
   rows.Add(kLineName, SetUpOf(LineOptions(options.fit), map));
   for (const GivenMatrices& given : options.given) rows.Add(given.name, SetUpOf(given));
-  rows.Add(kLightfitName, SetUpOf(options.fit, map));
+  rows.Add(kLightfitName, Known(frame, fitted, fit));
   if (!options.keep_images) comparison.truth.clear();
   return comparison;
 }

@@ -67,8 +67,9 @@ struct ComparedMap {
   // what was said with it; the published set-ups know only a lit one.
   Border border = Border::kLit;
 
-  // Over the samples that every table is over (FigureOptions()). The energy is Chong and Gortler's,
-  // math.md (3), squared footprints, whatever was minimised. Absent: no samples, or w <= 0 at some.
+  // Over the samples that every table is over (FigureOptions()), of the edges that a map with the
+  // border of "lightfit" serves. The energy is Chong and Gortler's, math.md (3), squared
+  // footprints, whatever was minimised. Absent: no samples, or w <= 0 at some.
   std::optional<Figures> figures;
   std::optional<WrongPixels> wrong;  // absent without truth
   std::optional<double> foretold;    // share of wrong pixels foretold from the read-back

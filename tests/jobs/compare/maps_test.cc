@@ -11,6 +11,7 @@
 #include "optimizer/evaluate.h"
 #include "optimizer/fit.h"
 #include "optimizer/light_matrix.h"
+#include "render/generator/room.h"
 #include "render/readback_image.h"
 #include "tests/jobs/compare/compare_scene.h"
 #include "tests/testing/matchers.h"
@@ -117,6 +118,44 @@ TEST_F(CompareMapsTest, FiguresAreThoseOfAnybodysMatrixOverTheTablesSamples) {
     EXPECT_EQ(comparison.samples.used, figures->samples.used);
     EXPECT_GT(comparison.samples.used, fit->figures.samples.used);
   }
+}
+
+// What a map with a dark border need not hold no row is measured by: in a room that the sun shines
+// into through windows, edges that lie in the dark.
+TEST(CompareDarkBorder, FiguresAreOverTheEdgesThatItServes) {
+  absl::StatusOr<RayCaster> caster = RayCaster::Build(MakeRoom(/*seed=*/5, 30000).scene);
+  ASSERT_THAT(caster, IsOk());
+  const absl::StatusOr<Camera> camera =
+      LookAtCamera({2.3, 1.6, 3.3}, {-2, 0.8, -1}, {0, 1, 0}, 1.2, 200, 150);
+  ASSERT_THAT(camera, IsOk());
+  const absl::StatusOr<CompareStage> stage = MakeStage(*caster, *camera, 160, 120);
+  ASSERT_THAT(stage, IsOk());
+  const Light sun = Light::Directional("sun", {1, -0.9, 0.3});
+  CompareOptions options;
+  options.fit.border = BorderChoice::kDark;
+  const LightComparison comparison = CompareMaps(*stage, sun, options);
+  EXPECT_EQ(comparison.lightfit().border, Border::kDark);
+
+  const absl::StatusOr<ReadbackImage> readback =
+      RenderReadback(*caster, stage->readback.camera, {sun});
+  ASSERT_THAT(readback, IsOk());
+  FitOptions table = options.fit;
+  table.metric = Metric::kL2;
+  for (const char* name : {"focused", "lightfit"}) {
+    SCOPED_TRACE(name);
+    const ComparedMap& row = *comparison.Find(name);
+    ASSERT_TRUE(row.figures.has_value()) << row.note;
+    const absl::StatusOr<Figures> figures =
+        EvaluateMatrix(readback->View(), sun, row.map_from_world, options.map, table);
+    ASSERT_THAT(figures, IsOk());
+    EXPECT_LT(RelativeError(row.figures->energy, figures->energy), kSumTolerance);
+    EXPECT_EQ(comparison.samples.used, figures->samples.used);
+  }
+  table.border = BorderChoice::kLit;
+  const absl::StatusOr<Figures> of_every_edge = EvaluateMatrix(
+      readback->View(), sun, comparison.Find("focused")->map_from_world, options.map, table);
+  ASSERT_THAT(of_every_edge, IsOk());
+  EXPECT_LT(comparison.samples.used, of_every_edge->samples.used);
 }
 
 // Whatever is minimised, all rows are measured by the same energy: nothing beats its own search.
