@@ -91,7 +91,7 @@ FitOptions Roomy(const TrackerOptions& options, Border border) {
 // The rule by hand, frame by frame.
 TEST(TrackerBorder, IsThatOfTheForecastAtUpdatesAndStaysBetweenThem) {
   int num_to_dark = 0, num_to_lit = 0, num_waited = 0;
-  for (uint64_t seed = 1; seed <= 5; ++seed) {
+  for (uint64_t seed = 1; seed <= 3; ++seed) {
     const Spots spots(seed, kThereAndBack);
     for (const double stability : {0.0, 0.5}) {
       const TrackerOptions options = Automatic(stability);
