@@ -27,7 +27,7 @@ CORE = f"{SIZING} optimizer/tracking"
 WIRE = f"{CORE} lightfit proto wire"
 IO = f"{WIRE} io"
 JOBS = f"{IO} jobs jobs/*"
-EVERYTHING_BELOW_CLI = f"{JOBS} methods render render/* picture calls server"
+EVERYTHING_BELOW_CLI = f"{JOBS} methods partition partition/* render render/* picture calls server"
 
 MAY_INCLUDE = {
     "base": "",
@@ -40,16 +40,18 @@ MAY_INCLUDE = {
     "optimizer/sizing": SIZING,
     "optimizer/tracking": CORE,
     "methods": "base geometry",
-    "render": CORE,
+    "partition": CORE,
+    "partition/published": f"{CORE} methods partition",
+    "render": f"{CORE} partition",
     "render/generator": f"{CORE} render",
     "proto": "lightfit",
     "wire": WIRE,
     "io": IO,
     "jobs": IO,
-    "jobs/compare": f"{IO} jobs methods render",
+    "jobs/compare": f"{IO} jobs methods partition partition/* render",
     "jobs/tune": f"{IO} jobs jobs/compare methods render render/generator",
     "jobs/shot": f"{IO} jobs",
-    "picture": f"{JOBS} methods render",
+    "picture": f"{JOBS} methods partition render",
     "calls": f"{IO} jobs",
     "server": "base lightfit io calls",
     "cli/flags": EVERYTHING_BELOW_CLI,
@@ -58,13 +60,13 @@ MAY_INCLUDE = {
     "python": f"{IO} jobs calls",
     "examples": f"{CORE} render render/generator lightfit",
     "fuzz": f"{IO} jobs render calls",
-    "bench": f"{JOBS} methods render render/* picture tests",
+    "bench": f"{JOBS} methods partition partition/* render render/* picture tests",
     "bench/service.cc": f"{JOBS} bench calls server tests",
     "tests": f"{EVERYTHING_BELOW_CLI} cli cli/*",
 }
 
 # Libraries that rooms must not know: what an engine links reads no files and speaks no protocol.
-ROOMS_OF_AN_ENGINE = ("base", "geometry", "optimizer", "methods")
+ROOMS_OF_AN_ENGINE = ("base", "geometry", "optimizer", "methods", "partition")
 NOT_FOR_AN_ENGINE = re.compile(r"(OpenImageIO|OpenEXR|Imath|cairo|google/protobuf|CLI|grpc)")
 
 INCLUDE = re.compile(r'^#include ["<]([^">]+)[">]')
