@@ -1,0 +1,37 @@
+// partition/plan_options.h
+//
+// Every choice of a plan: how many maps, of which sizes, and how each of them is fitted.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "absl/status/status.h"
+#include "geometry/map_size.h"
+#include "optimizer/fit_options.h"
+
+namespace lightfit {
+
+struct PlanOptions {
+  // Of which samples, cover, border, metric, margin and min_w count. Maps are enclosing
+  // parallelograms of least energy in any case.
+  FitOptions fit;
+
+  // 1 ... kMaxPlanMaps. A plan may have fewer.
+  int max_maps = 4;
+
+  // Of all maps together; never exceeded.
+  int64_t texels = int64_t{1} << 20;
+
+  // All maps have this size, and `texels` does not count: for arrays of equal textures.
+  std::optional<MapSize> each;
+
+  // The outermost texels of every map that look-ups keep away from, half a filter's width: what the
+  // maps must serve lies within. >= 0.
+  double guard_texels = 0.0;
+};
+
+// InvalidArgument names the field as options.FIELD.
+absl::Status ValidatePlanOptions(const PlanOptions& options);
+
+}  // namespace lightfit

@@ -1,0 +1,77 @@
+// partition/served_rays.h
+//
+// What the maps of a plan are fitted to, sorted into bins of rays that lie close together.
+// In:   a LightView (one light in one read-back, and the border).
+// Out:  ServedRays: bins, each with the rays that must be covered and its samples.
+//
+// A cell of a plan is a set of bins, so that what is known of a bin (sums, hulls) is added up and
+// not found anew for every cell that is tried.
+//
+// Between two pixels of a read-back lie several of the image. One map's margin hides that, several
+// small ones would leave dark strips between them: so not the rays of pixels' centres are covered
+// but those of their corners, each on the pixel's own plane. On a plane they tile the screen.
+//
+// Every covered pixel also counts as a sample of its whole footprint, all of them together a tenth
+// of the boundary's: a cell with few boundary samples would be fitted to those few, and the rest of
+// it would get texels as large as rooms.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "absl/status/statusor.h"
+#include "base/scratch.h"
+#include "geometry/homography.h"
+#include "optimizer/energy/summary.h"
+#include "optimizer/fit_options.h"
+#include "optimizer/light_view.h"
+
+namespace lightfit {
+
+// One sample in the form that sums and footprints are made from: weight, ray, and the metric's
+// tensor in it, (D'n)(D'n)' and D'D as MetricWeights have it.
+struct RaySample {
+  Eigen::Vector3d X;
+  SymmetricVector G;
+  double weight = 1.0;
+};
+
+struct RayBin {
+  Eigen::Vector3d middle;  // mean of the unit rays to what is in it
+  // The extreme of the rays to cover, of whatever length; none where the bin has samples only.
+  ScratchVector<Eigen::Vector3d> hull;
+  int samples_begin = 0, samples_end = 0;  // in ServedRays::samples
+  int num_covered = 0;                     // pixels
+  double nearest = 0.0;                    // of the covered ones, from a point light; world units
+};
+
+struct ServedRays {
+  // All rays X' = N X of light-space rays X (RayFromWorld()); the identity where receivers surround
+  // the light.
+  Eigen::Matrix3d normalized_from_ray = Eigen::Matrix3d::Identity();
+
+  // Whether one map could cover all: then X'_3 > 0 on every ray.
+  bool has_single_cover = false;
+
+  ScratchVector<RayBin> bins;
+  ScratchVector<RaySample> samples;  // by bin
+  int num_boundary = 0;              // of them at shadow edges; the others are covered pixels
+  int64_t num_covered = 0;           // pixels
+  DepthRange distance;  // of all receivers: from a point light, or along the direction of travel
+};
+
+struct ServedRaysOptions {
+  // How far from a pixel's centre its corners are, in pixels of the read-back. >= 0.
+  double corner = 0.5;
+  // Weight of all covered pixels together, as a share of that of the boundary samples. >= 0.
+  double floor_share = 0.1;
+  // The most bins there are. >= 1.
+  int max_bins = 1024;
+};
+
+// Of `fit` count the cover and the metric; the view was made with it. CancelledError once a
+// StopScope says so.
+absl::StatusOr<ServedRays> FindServedRays(const LightView& view,
+                                          const FitOptions& fit,
+                                          const ServedRaysOptions& options = {});
+
+}  // namespace lightfit
