@@ -49,8 +49,11 @@ bool PlanLookUp::IsAskable(int k, const Eigen::Vector3d& world, Eigen::Vector2d*
   const bool is_inside = texel->x() >= guard_texels_ && texel->y() >= guard_texels_ &&
                          texel->x() < map.size.width - guard_texels_ &&
                          texel->y() < map.size.height - guard_texels_;
-  if (!is_inside) return false;
-  for (const Eigen::RowVector4d& half_space : map.half_spaces) {
+  return is_inside && IsServed(k, world);
+}
+
+bool PlanLookUp::IsServed(int k, const Eigen::Vector3d& world) const {
+  for (const Eigen::RowVector4d& half_space : maps_[k].half_spaces) {
     if (!(half_space * world.homogeneous() >= 0.0)) return false;
   }
   return true;

@@ -66,6 +66,9 @@ class PlanLookUp {
   // Whether map k may be asked about the receiver, and the place in it.
   bool IsAskable(int k, const Eigen::Vector3d& world, Eigen::Vector2d* texel) const;
 
+  // Whether all half spaces of map k hold the receiver.
+  bool IsServed(int k, const Eigen::Vector3d& world) const;
+
   // q_k of the receiver: a share of 1 / (density of texels)^(1/3), the same for all maps.
   double CoarsenessOf(int k, const Eigen::Vector3d& world) const;
 

@@ -33,8 +33,7 @@ Flicker CountFlips(const ShadowImage& a,
                    absl::Span<const uint8_t> seen_in_both) {
   Flicker flicker;
   for (size_t i = 0; i < seen_in_both.size(); ++i) {
-    const bool is_judged = a.ideal[i] == Lighting::kLit || a.ideal[i] == Lighting::kShadowed;
-    if (!is_judged || seen_in_both[i] == 0) continue;
+    if (!IsJudged(a.ideal[i]) || seen_in_both[i] == 0) continue;
     ++flicker.judged;
     if (a.ideal[i] != b.ideal[i]) ++flicker.flips_ideal;
     if (a.practical[i] != b.practical[i]) ++flicker.flips_practical;

@@ -13,6 +13,7 @@
 //    plane by more than a constant. Adds false shadow in valleys, where the surface beyond the
 //    edge rises over the receiver's plane.
 // What a receiver outside the map finds is the map's border, lit or dark.
+// render/judge_plan.h judges several maps of one light; one map is the plan of one.
 //
 // Counts depend on where single texels fall: the same map a quarter of a texel further on has
 // others. So they may be averaged over phases, maps moved by parts of a texel.
@@ -52,6 +53,15 @@ struct JudgeOptions {
 };
 
 absl::Status ValidateJudgeOptions(const JudgeOptions& options);
+
+// How far maps are moved in a phase, texels; exactly nothing in the only one of 1. For valid
+// options.
+Eigen::Vector2d MoveOfPhase(const JudgeOptions& options, int phase);
+
+// Whether a pixel of this true lighting is judged.
+inline bool IsJudged(Lighting truth) {
+  return truth == Lighting::kLit || truth == Lighting::kShadowed;
+}
 
 // Means over the phases; counts of pixels are rounded to whole ones.
 struct WrongPixels {
