@@ -27,6 +27,7 @@
 #include "bench/scene_set.h"
 #include "jobs/compare/stage.h"
 #include "methods/method.h"
+#include "optimizer/figures/foretell.h"
 #include "optimizer/fit.h"
 #include "optimizer/readback/surfaces.h"
 #include "partition/fit_plan.h"
@@ -57,6 +58,7 @@ struct Measured {
   double ideal = 0.0, practical = 0.0, outside = 0.0;
   double seconds = 0.0;
   double energy = 0.0;
+  double foretold = 0.0;  // wrong pixels
   int num_maps = 0;
 };
 
@@ -90,6 +92,7 @@ struct Inputs {
 };
 struct Row {
   std::string name;
+  bool from_large;
   std::function<absl::StatusOr<LightPlan>(const Inputs&)> make;
 };
 
@@ -103,7 +106,7 @@ LightPlan PlanOfMatrix(const Eigen::Matrix4d& map_from_world) {
 }
 
 Row PublishedRow(Method method) {
-  return {MethodName(method), [method](const Inputs& inputs) -> absl::StatusOr<LightPlan> {
+  return {MethodName(method), false, [method](const Inputs& inputs) -> absl::StatusOr<LightPlan> {
             MethodInput input = inputs.method;
             input.light = inputs.light;
             input.map = kMap;
@@ -114,7 +117,7 @@ Row PublishedRow(Method method) {
 }
 
 Row FittedRow(const std::string& name, bool from_large, const PlanOptions& options) {
-  return {name, [from_large, options](const Inputs& inputs) {
+  return {name, from_large, [from_large, options](const Inputs& inputs) {
             return FitPlan(from_large ? inputs.large : inputs.small, inputs.light, options);
           }};
 }
@@ -140,6 +143,8 @@ std::vector<Row> MakeRows(const Arguments& arguments) {
       plan.max_maps = num_maps;
       const int side = from_large ? arguments.large_readback : arguments.readback;
       rows.push_back(FittedRow(absl::StrCat(num_maps, " maps, ", side), from_large, plan));
+      plan.fit.border = BorderChoice::kAutomatic;
+      rows.push_back(FittedRow(absl::StrCat(num_maps, " maps, ", side, ", a"), from_large, plan));
     }
   }
   return rows;
@@ -192,6 +197,16 @@ class LightBench {
     measured.outside = static_cast<double>(image->wrong.outside);
     measured.energy = plan->energy;
     measured.num_maps = static_cast<int>(plan->maps.size());
+    std::vector<SizedMatrix> maps;
+    for (const LightMatrix& map : plan->maps) maps.push_back({map.map_from_world, map.map});
+    constexpr double kPixels = static_cast<double>(kScreenSize) * kScreenSize;
+    measured.foretold =
+        kPixels * ForetellWrongShare(row.from_large ? large_view_.readback : small_view_.readback,
+                                     light_,
+                                     maps,
+                                     {},
+                                     plan->border)
+                      .value_or(0.0);
     return measured;
   }
 
@@ -307,13 +322,13 @@ void Print(const std::vector<Row>& rows, const std::vector<LightRow>& lights) {
 absl::Status WriteCsv(const std::string& path,
                       const std::vector<Row>& rows,
                       const std::vector<LightRow>& lights) {
-  std::string text = "scene,light,row,maps,ideal,practical,outside,energy,seconds\n";
+  std::string text = "scene,light,row,maps,ideal,practical,outside,energy,foretold,seconds\n";
   for (const LightRow& light : lights) {
     for (size_t row = 0; row < rows.size(); ++row) {
       const Measured& measured = light.rows[row];
       if (!measured.is_there) continue;
       absl::StrAppendFormat(&text,
-                            "%s,%s,\"%s\",%d,%g,%g,%g,%g,%g\n",
+                            "%s,%s,\"%s\",%d,%g,%g,%g,%g,%g,%g\n",
                             light.scene,
                             light.light,
                             rows[row].name,
@@ -322,6 +337,7 @@ absl::Status WriteCsv(const std::string& path,
                             measured.practical,
                             measured.outside,
                             measured.energy,
+                            measured.foretold,
                             measured.seconds);
     }
   }

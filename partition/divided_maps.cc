@@ -3,7 +3,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/stop.h"
 #include "partition/split_cell.h"
@@ -38,52 +37,28 @@ DividedMaps::DividedMaps(const CellFitter& fitter, const Cells& cells, double te
   for (size_t k = 0; k < cells.size(); ++k) {
     const CellMap& cell = cells[k].map;
     const double scale = std::sqrt(divided[k] / (cell.width * cell.height));
-    Map map = {cell.map_from_ray, scale * cell.width, scale * cell.height, {}};
-    map.map_from_ray.topRows<2>() *= scale;
-    map.coarseness =
-        map.map_from_ray.row(2).transpose() / std::cbrt(std::abs(map.map_from_ray.determinant()));
-    maps_.push_back(map);
+    Eigen::Matrix3d map_from_ray = cell.map_from_ray;
+    map_from_ray.topRows<2>() *= scale;
+    maps_.push_back(RayMap(map_from_ray, scale * cell.width, scale * cell.height));
   }
-}
-
-bool DividedMaps::Holds(const Map& map, const Eigen::Vector3d& ray) const {
-  const Eigen::Vector3d at = map.map_from_ray * ray;
-  return at.z() > 0.0 && at.x() >= 0.0 && at.y() >= 0.0 && at.x() < map.width * at.z() &&
-         at.y() < map.height * at.z();
 }
 
 int DividedMaps::At(const Eigen::Vector3d& ray, bool in_rectangle) const {
-  int best = -1;
-  double least = std::numeric_limits<double>::infinity();
-  for (size_t k = 0; k < maps_.size(); ++k) {
-    const double q = maps_[k].coarseness.dot(ray);
-    if (!(q > 0.0 && q < least) || (in_rectangle && !Holds(maps_[k], ray))) continue;
-    least = q;
-    best = static_cast<int>(k);
-  }
-  return best;
+  return DensestAt(maps_, ray, [&](int k) { return !in_rectangle || maps_[k].Holds(ray); });
 }
 
 int DividedMaps::At(const Eigen::Vector3d& middle,
                     const ScratchVector<Eigen::Vector3d>& rays) const {
-  int best = -1;
-  double least = std::numeric_limits<double>::infinity();
-  for (size_t k = 0; k < maps_.size(); ++k) {
-    const double q = maps_[k].coarseness.dot(middle);
-    if (!(q > 0.0 && q < least)) continue;
-    const bool holds_all = std::all_of(
-        rays.begin(), rays.end(), [&](const Eigen::Vector3d& ray) { return Holds(maps_[k], ray); });
-    if (!holds_all) continue;
-    least = q;
-    best = static_cast<int>(k);
-  }
-  return best;
+  return DensestAt(maps_, middle, [&](int k) {
+    return std::all_of(
+        rays.begin(), rays.end(), [&](const Eigen::Vector3d& ray) { return maps_[k].Holds(ray); });
+  });
 }
 
 double DividedMaps::Energy() const {
   ScratchVector<MapExtents> extents;
   extents.reserve(maps_.size());
-  for (const Map& map : maps_) extents.push_back(MapExtents(map.map_from_ray));
+  for (const RayMap& map : maps_) extents.push_back(MapExtents(map.map_from_ray));
   double sum = 0.0;
   const ScratchVector<RaySample>& samples = fitter_.rays().samples;
   for (size_t i = 0; i < samples.size() && !IsStopped(i); ++i) {

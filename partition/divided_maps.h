@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 
 #include "base/scratch.h"
+#include "geometry/ray_maps.h"
 #include "partition/cells.h"
 
 namespace lightfit {
@@ -33,16 +34,8 @@ class DividedMaps {
   double texels(int map) const { return maps_[map].width * maps_[map].height; }
 
  private:
-  struct Map {
-    Eigen::Matrix3d map_from_ray;
-    double width, height;        // texels
-    Eigen::Vector3d coarseness;  // q = coarseness . X, math.md (18)
-  };
-
-  bool Holds(const Map& map, const Eigen::Vector3d& ray) const;
-
   const CellFitter& fitter_;
-  ScratchVector<Map> maps_;
+  ScratchVector<RayMap> maps_;
 };
 
 // How many texels each cell gets.

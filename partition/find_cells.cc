@@ -124,15 +124,18 @@ ScratchVector<Cells> GrowCells(const CellFitter& fitter, int max_cells) {
 Cells AlternateCells(const CellFitter& fitter, const Cells& cells, double texels) {
   BestOfRounds<Cells> best;
   best.Offer(DividedMaps(fitter, cells, texels).Energy(), cells);
-  // By density alone cells move freely, and may die.
-  Alternate(
-      fitter,
-      cells,
-      texels,
-      [](const DividedMaps& maps, const RayBin& bin) {
-        return maps.At(bin.middle, /*in_rectangle=*/false);
-      },
-      &best);
+  if (fitter.rays().has_single_cover) {
+    // By density alone cells move freely, and may die. All around a lamp that would send every ray
+    // to the map that looks the other way.
+    Alternate(
+        fitter,
+        cells,
+        texels,
+        [](const DividedMaps& maps, const RayBin& bin) {
+          return maps.At(bin.middle, /*in_rectangle=*/false);
+        },
+        &best);
+  }
   // To maps that hold all of the bin: the old maps stay possible for the new cells.
   const Cells from = best.Best();
   Alternate(

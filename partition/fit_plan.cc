@@ -10,11 +10,14 @@
 #include "absl/strings/str_format.h"
 #include "base/stop.h"
 #include "geometry/light_map.h"
+#include "geometry/ray_maps.h"
 #include "optimizer/choose_fit.h"
+#include "optimizer/figures/foretell.h"
 #include "optimizer/fit.h"
 #include "optimizer/fit_matrix.h"
 #include "partition/divided_maps.h"
 #include "partition/find_cells.h"
+#include "partition/sphere_cells.h"
 
 namespace lightfit {
 
@@ -35,21 +38,27 @@ MapSize WholeSize(const CellMap& map, double texels) {
   return {std::min(width, kMaxMapSide), std::min(height, kMaxMapSide)};
 }
 
-absl::StatusOr<LightPlan> PlanOfOneMap(const Surfaces& surfaces,
-                                       const Light& light,
-                                       const PlanOptions& options) {
+LightPlan PlanOfOne(const LightMatrix& matrix) {
+  LightPlan plan;
+  plan.light_name = matrix.light_name;
+  plan.border = matrix.border;
+  plan.facing = matrix.facing;
+  plan.energy = matrix.figures.energy;
+  plan.wrong_share = matrix.figures.wrong_share;
+  plan.maps.push_back(matrix);
+  return plan;
+}
+
+// By the fit of one map, from `from`, a light in its surfaces or a view.
+template <typename... From>
+absl::StatusOr<LightPlan> PlanOfOneMap(const PlanOptions& options, const From&... from) {
   FitOptions fit = options.fit;
   fit.margin_texels += options.guard_texels;
+  if constexpr (sizeof...(From) == 1) fit.border = BorderChoice::kAutomatic;  // that of the view
   const absl::StatusOr<LightMatrix> matrix =
-      FitLight(surfaces, light, options.each.value_or(SquareOf(options.texels)), fit);
+      FitLight(from..., options.each.value_or(SquareOf(options.texels)), fit);
   if (!matrix.ok()) return matrix.status();
-  LightPlan plan;
-  plan.light_name = matrix->light_name;
-  plan.border = matrix->border;
-  plan.facing = matrix->facing;
-  plan.energy = matrix->figures.energy;
-  plan.maps.push_back(*matrix);
-  return plan;
+  return PlanOfOne(*matrix);
 }
 
 // Makes the matrices of fitted cells.
@@ -120,20 +129,12 @@ class Finisher {
       samples.counts = view_.samples.counts;
       samples.counts.used = 0;
     }
+    ScratchVector<RayMap> ray_maps;
+    for (const MapOfCell& map : maps) {
+      ray_maps.push_back(RayMap(map.map_from_ray, map.size.width, map.size.height));
+    }
     for (size_t i = 0; i < view_.samples.size(); ++i) {
-      const Eigen::Vector3d ray = view_.samples.At(i).X;
-      int asked = -1;
-      double least = std::numeric_limits<double>::infinity();
-      for (size_t k = 0; k < maps.size(); ++k) {
-        const Eigen::Vector3d at = maps[k].map_from_ray * ray;
-        const double q = at.z() / std::cbrt(std::abs(maps[k].map_from_ray.determinant()));
-        const bool is_inside = at.z() > 0.0 && at.x() >= 0.0 && at.y() >= 0.0 &&
-                               at.x() < maps[k].size.width * at.z() &&
-                               at.y() < maps[k].size.height * at.z();
-        if (!is_inside || q >= least) continue;
-        least = q;
-        asked = static_cast<int>(k);
-      }
+      const int asked = DensestAt(ray_maps, view_.samples.At(i).X);
       if (asked < 0) continue;
       by_map[asked].AppendFrom(view_.samples, i);
       ++by_map[asked].counts.used;
@@ -168,26 +169,144 @@ class Finisher {
   const PlanOptions& options_;
 };
 
+// The best plan so far, by what is foretold where that is asked for.
+class Choice {
+ public:
+  Choice(const Surfaces& surfaces, const Light& light, const PlanOptions& options)
+      : surfaces_(surfaces), light_(light), options_(options) {}
+
+  absl::Status Offer(LightPlan plan) {
+    ScratchVector<SizedMatrix> maps;
+    for (const LightMatrix& map : plan.maps) maps.push_back({map.map_from_world, map.map});
+    const absl::StatusOr<double> share =
+        ForetellWrongShare(surfaces_.readback, light_, maps, options_.fit.samples, plan.border);
+    if (!share.ok()) return share.status();
+    plan.wrong_share = *share;
+    const bool is_to_dark =
+        best_.has_value() && plan.border == Border::kDark && best_->border == Border::kLit;
+    const double below = is_to_dark ? kDarkBorderBelow : 1.0;
+    if (!best_.has_value() || *share < below * *best_->wrong_share) best_ = std::move(plan);
+    return absl::OkStatus();
+  }
+
+  bool is_empty() const { return !best_.has_value(); }
+  LightPlan&& Best() && { return *std::move(best_); }
+
+ private:
+  const Surfaces& surfaces_;
+  const Light& light_;
+  const PlanOptions& options_;
+  std::optional<LightPlan> best_;
+};
+
+// Plans of one light with one border.
+class BorderPlanner {
+ public:
+  // The view and the options must outlive the planner.
+  BorderPlanner(const LightView& view,
+                const ServedRays& rays,
+                const FitOptions& fit,
+                const PlanOptions& options)
+      : view_(view),
+        options_(options),
+        fitter_(rays, *view.light, fit),
+        finisher_(view, fitter_, options),
+        grown_(GrowCells(fitter_, options.max_maps)) {}
+
+  // FailedPrecondition where there is none of so many maps.
+  absl::StatusOr<LightPlan> PlanOf(int num_maps) const {
+    const double texels = TexelsOf(num_maps);
+    Cells cells = GrownOf(num_maps);
+    if (view_.light->kind == Light::Kind::kPoint) {
+      Cells clusters = ClusterCells(fitter_, num_maps, texels);
+      if (!clusters.empty() &&
+          (cells.empty() || DividedMaps(fitter_, clusters, texels).Energy() <
+                                DividedMaps(fitter_, cells, texels).Energy())) {
+        cells = std::move(clusters);
+      }
+    }
+    if (absl::Status status = CheckStop(*view_.light); !status.ok()) return status;
+    if (cells.empty()) {
+      return view_.cover.ok()
+                 ? absl::FailedPreconditionError(absl::StrFormat(
+                       "light \"%s\": no map can be fitted to what it shows", view_.light->name))
+                 : SurroundedByError(num_maps);
+    }
+    cells = AlternateCells(fitter_, cells, texels);
+    if (absl::Status status = CheckStop(*view_.light); !status.ok()) return status;
+    return finisher_.Finish(cells);
+  }
+
+ private:
+  double TexelsOf(int num_maps) const {
+    if (!options_.each.has_value()) return static_cast<double>(options_.texels);
+    return static_cast<double>(options_.each->width) * options_.each->height * num_maps;
+  }
+
+  Cells GrownOf(int num_maps) const {
+    if (grown_.empty()) return {};
+    return grown_[std::min<size_t>(num_maps, grown_.size()) - 1];
+  }
+
+  // Receivers all around, and too few maps for them.
+  absl::Status SurroundedByError(int num_maps) const {
+    // Any rays at all have a plan of so many: one for each face of a cube.
+    constexpr int kAlwaysEnough = 6;
+    int enough = num_maps + 1;
+    while (enough < kAlwaysEnough && ClusterCells(fitter_, enough, TexelsOf(enough)).empty()) {
+      ++enough;
+    }
+    return absl::FailedPreconditionError(absl::StrFormat(
+        "light \"%s\": at (%g, %g, %g) it hangs among its receivers, and no %d maps "
+        "have all of them in front; %d would do",
+        view_.light->name,
+        view_.light->position.x(),
+        view_.light->position.y(),
+        view_.light->position.z(),
+        num_maps,
+        enough));
+  }
+
+  const LightView& view_;
+  const PlanOptions& options_;
+  CellFitter fitter_;
+  Finisher finisher_;
+  ScratchVector<Cells> grown_;
+};
+
+// 2, 4, 8 ... below `most`, and `most`.
+ScratchVector<int> CountsUpTo(int most) {
+  ScratchVector<int> counts;
+  for (int count = 2; count < most; count *= 2) counts.push_back(count);
+  counts.push_back(most);
+  return counts;
+}
+
+// Plans with one border; `choice` is null where the one of most maps is wanted.
 absl::StatusOr<LightPlan> FitInBorder(const Surfaces& surfaces,
                                       const Light& light,
                                       Border border,
-                                      const PlanOptions& options) {
+                                      const PlanOptions& options,
+                                      Choice* choice) {
   FitOptions fit = options.fit;
   fit.border = BorderChoice::kAutomatic;  // that of the view
   const absl::StatusOr<LightView> view = ViewLight(surfaces, light, border, fit);
   if (!view.ok()) return view.status();
   const absl::StatusOr<ServedRays> rays = FindServedRays(*view, fit);
   if (!rays.ok()) return rays.status();
-  const CellFitter fitter(*rays, light, fit);
-  const double texels = options.each.has_value() ? static_cast<double>(options.each->width) *
-                                                       options.each->height * options.max_maps
-                                                 : static_cast<double>(options.texels);
-  ScratchVector<Cells> grown = GrowCells(fitter, options.max_maps);
-  if (absl::Status status = CheckStop(light); !status.ok()) return status;
-  if (grown.empty()) return view->cover.ok() ? absl::UnknownError("no map") : view->cover.status();
-  const Cells cells = AlternateCells(fitter, grown.back(), texels);
-  if (absl::Status status = CheckStop(light); !status.ok()) return status;
-  return Finisher(*view, fitter, options).Finish(cells);
+  const BorderPlanner planner(*view, *rays, fit, options);
+  if (choice == nullptr) return planner.PlanOf(options.max_maps);
+  absl::StatusOr<LightPlan> last = PlanOfOneMap(options, *view);
+  if (last.ok()) {
+    if (absl::Status status = choice->Offer(*last); !status.ok()) return status;
+  }
+  for (const int count : CountsUpTo(options.max_maps)) {
+    last = planner.PlanOf(count);
+    if (absl::IsCancelled(last.status())) return last;
+    if (!last.ok()) continue;
+    if (absl::Status status = choice->Offer(*last); !status.ok()) return status;
+  }
+  return last;
 }
 
 }  // namespace
@@ -209,9 +328,22 @@ absl::StatusOr<LightPlan> FitPlan(const Surfaces& surfaces,
                                   const PlanOptions& options) {
   if (absl::Status status = ValidatePlanOptions(options); !status.ok()) return status;
   if (absl::Status status = ValidateLight(light); !status.ok()) return status;
-  if (options.max_maps == 1) return PlanOfOneMap(surfaces, light, options);
-  const bool is_dark = options.fit.border == BorderChoice::kDark;
-  return FitInBorder(surfaces, light, is_dark ? Border::kDark : Border::kLit, options);
+  if (options.max_maps == 1) return PlanOfOneMap(options, surfaces, light);
+  const BorderChoice border = options.fit.border;
+  const Border first = border == BorderChoice::kDark ? Border::kDark : Border::kLit;
+  if (!options.choose_by_forecast || !surfaces.readback.KnowsFacing(light.shadow_bit)) {
+    return FitInBorder(surfaces, light, first, options, nullptr);
+  }
+  Choice choice(surfaces, light, options);
+  absl::StatusOr<LightPlan> last = FitInBorder(surfaces, light, first, options, &choice);
+  if (absl::IsCancelled(last.status())) return last;
+  if (border == BorderChoice::kAutomatic) {
+    const absl::StatusOr<LightPlan> dark =
+        FitInBorder(surfaces, light, Border::kDark, options, &choice);
+    if (absl::IsCancelled(dark.status())) return dark;
+  }
+  if (choice.is_empty()) return last;
+  return std::move(choice).Best();
 }
 
 }  // namespace lightfit

@@ -34,6 +34,9 @@ struct LightPlan {
   // Sum over the boundary samples in FitOptions::metric, each in the map that it asks; those
   // outside of all maps, lit ones at a lit border, are in none. As Figures::energy.
   double energy = 0.0;
+
+  // Foretold, as Figures::wrong_share; where plans were chosen by it.
+  std::optional<double> wrong_share;
 };
 
 // What a look-up needs of it.

@@ -20,6 +20,12 @@ struct PlanOptions {
   // 1 ... kMaxPlanMaps. A plan may have fewer.
   int max_maps = 4;
 
+  // Whether plans of fewer maps, one included, are tried too and the one taken of which the fewest
+  // wrong pixels are foretold (ForetellWrongShare()), with BorderChoice::kAutomatic in either
+  // border. Else the plan of `max_maps` is taken as it is: a quarter of the time. Without the third
+  // state (Readback::facing_bits) forecasts rank plans too badly, and it is taken in any case.
+  bool choose_by_forecast = true;
+
   // Of all maps together; never exceeded.
   int64_t texels = int64_t{1} << 20;
 

@@ -12,12 +12,11 @@ namespace lightfit {
 
 namespace {
 
-// The share of the finer cells that the border answers wrongly and that lie outside the map;
+// The share of the finer cells that the border answers wrongly and that lie outside all maps;
 // nothing where none are known.
 std::optional<double> OutsideShareOfFineCover(const Readback& readback,
                                               const Light& light,
-                                              const Eigen::Matrix4d& map_from_world,
-                                              MapSize map,
+                                              absl::Span<const SizedMatrix> maps,
                                               Border border) {
   if (readback.fine_cover == nullptr) return std::nullopt;
   const FineCover& fine = *readback.fine_cover;
@@ -26,16 +25,19 @@ std::optional<double> OutsideShareOfFineCover(const Readback& readback,
   const uint32_t bit = uint32_t{1} << light.shadow_bit;
   const Readback layer = FineLayer(readback, 0, words);
   const AffineDepth affine_depth(layer.camera, layer.depth_kind);
-  const Eigen::Matrix4d map_from_screen = map_from_world * layer.camera.WorldFromScreen();
+  const Eigen::Matrix4d world_from_screen = layer.camera.WorldFromScreen();
   int64_t num_outside = 0;
   for (int y = 0; y < fine.rows; ++y) {
     for (int x = 0; x < fine.columns; ++x) {
       const size_t cell = layer.Index(x, y);
       if ((words[cell] & bit) == 0 || !affine_depth.IsSurface(layer.depth[cell])) continue;
       const double d = affine_depth.At(x, y, layer.depth[cell]);
-      const Eigen::Vector4d at = map_from_screen * Eigen::Vector4d(x + 0.5, y + 0.5, d, 1.0);
-      const bool is_inside = at.w() > 0.0 && at.x() >= 0.0 && at.y() >= 0.0 &&
-                             at.x() <= map.width * at.w() && at.y() <= map.height * at.w();
+      const Eigen::Vector4d world = world_from_screen * Eigen::Vector4d(x + 0.5, y + 0.5, d, 1.0);
+      const bool is_inside = std::any_of(maps.begin(), maps.end(), [&](const SizedMatrix& map) {
+        const Eigen::Vector4d at = map.map_from_world * world;
+        return at.w() > 0.0 && at.x() >= 0.0 && at.y() >= 0.0 &&
+               at.x() <= map.size.width * at.w() && at.y() <= map.size.height * at.w();
+      });
       num_outside += is_inside ? 0 : 1;
     }
   }
@@ -50,17 +52,24 @@ absl::StatusOr<double> ForetellWrongShare(const Readback& readback,
                                           MapSize map,
                                           const SampleOptions& options,
                                           Border border) {
+  const SizedMatrix sized = {map_from_world, map};
+  return ForetellWrongShare(readback, light, absl::MakeConstSpan(&sized, 1), options, border);
+}
+
+absl::StatusOr<double> ForetellWrongShare(const Readback& readback,
+                                          const Light& light,
+                                          absl::Span<const SizedMatrix> maps,
+                                          const SampleOptions& options,
+                                          Border border) {
   const absl::StatusOr<PixelFootprints> footprints =
-      PixelFootprints::Create(readback, light, map_from_world, options);
+      PixelFootprints::Create(readback, light, maps, options);
   if (!footprints.ok()) return footprints.status();
   // What lies outside the finer image tells better.
-  const std::optional<double> outside =
-      OutsideShareOfFineCover(readback, light, map_from_world, map, border);
+  const std::optional<double> outside = OutsideShareOfFineCover(readback, light, maps, border);
   const std::optional<Border> counted = outside.has_value() ? std::nullopt : std::optional(border);
-  const absl::StatusOr<double> share =
-      readback.KnowsFacing(light.shadow_bit)
-          ? ForetellByState(readback, light, *footprints, map, counted)
-          : ForetellByBits(readback, light, *footprints, map, counted);
+  const absl::StatusOr<double> share = readback.KnowsFacing(light.shadow_bit)
+                                           ? ForetellByState(readback, light, *footprints, counted)
+                                           : ForetellByBits(readback, light, *footprints, counted);
   if (!share.ok()) return share.status();
   return std::min(*share + outside.value_or(0.0), 1.0);
 }

@@ -11,9 +11,11 @@
 #include <optional>
 
 #include "absl/status/statusor.h"
+#include "absl/types/span.h"
 #include "geometry/border.h"
 #include "geometry/light.h"
 #include "geometry/map_size.h"
+#include "optimizer/figures/pixel_footprint.h"
 #include "optimizer/readback/readback.h"
 #include "optimizer/readback/sample_options.h"
 
@@ -35,6 +37,14 @@ absl::StatusOr<double> ForetellWrongShare(const Readback& readback,
                                           const Light& light,
                                           const Eigen::Matrix4d& map_from_world,
                                           MapSize map,
+                                          const SampleOptions& options = {},
+                                          Border border = Border::kLit);
+
+// The same of several maps of one light, of which each pixel asks the densest that holds it. Each
+// matrix must be one of this light (MapFromRay()).
+absl::StatusOr<double> ForetellWrongShare(const Readback& readback,
+                                          const Light& light,
+                                          absl::Span<const SizedMatrix> maps,
                                           const SampleOptions& options = {},
                                           Border border = Border::kLit);
 

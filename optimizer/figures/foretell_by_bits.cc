@@ -1,5 +1,6 @@
 #include "optimizer/figures/foretell_by_bits.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -72,7 +73,6 @@ class ShadowOfSurface {
 absl::StatusOr<double> ForetellByBits(const Readback& readback,
                                       const Light& light,
                                       const PixelFootprints& footprints,
-                                      MapSize map,
                                       std::optional<Border> border) {
   ShadowOfSurface shadow(readback, footprints, light.shadow_bit);
   const int stride = ForecastStride(readback);
@@ -86,6 +86,7 @@ absl::StatusOr<double> ForetellByBits(const Readback& readback,
       if (!pixel.has_value()) continue;
       const double bit = shadow.Bit(x, y);
       const Eigen::Vector2d& texel = pixel->texel;
+      const MapSize map = footprints.size(std::max(0, pixel->map));
       if (pixel->is_behind || texel.x() < 0.0 || texel.y() < 0.0 || texel.x() > map.width ||
           texel.y() > map.height) {
         if (border.has_value()) sum += *border == Border::kDark ? 1.0 - bit : bit;

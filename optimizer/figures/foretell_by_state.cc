@@ -47,14 +47,11 @@ class StateForecast {
   StateForecast(const Readback& readback,
                 const Light& light,
                 const PixelFootprints& footprints,
-                MapSize map,
                 std::optional<Border> border)
       : readback_(readback),
         footprints_(footprints),
         affine_depth_(footprints.affine_depth()),
-        map_from_screen_(footprints.map_from_screen()),
         world_from_screen_(footprints.world_from_screen()),
-        map_(map),
         needed_(border == Border::kDark  ? State::kLit
                 : border == Border::kLit ? State::kDark
                                          : State::kBackground) {
@@ -91,37 +88,11 @@ class StateForecast {
 
   // A fit covers what its own read-back shows, so that none of it lies outside; things thinner than
   // a pixel do. Where the outermost pixel to cover stands far from the next, as the tip of a shadow
-  // does, more of the kind is not seen. In read-back pixels.
+  // does, more of the kind is not seen; unless another map goes on there. In read-back pixels.
   double OutsideUnseen() const {
-    constexpr double kFar = std::numeric_limits<double>::infinity();
     if (needed_ == State::kBackground) return 0.0;
-    std::array<std::array<double, 2>, 4> gaps;  // by side: the two smallest
-    for (auto& side : gaps) side = {kFar, kFar};
-    for (int y = 0; y < readback_.height(); ++y) {
-      for (int x = 0; x < readback_.width(); ++x) {
-        if (At(x, y) != needed_) continue;
-        const Eigen::Vector3d map = map_from_screen_ * Screen(x, y);
-        if (!(map.z() > 0.0)) continue;
-        const double u = map.x() / map.z(), v = map.y() / map.z();
-        const double to_side[4] = {u, map_.width - u, v, map_.height - v};
-        if (*std::min_element(to_side, to_side + 4) < 0.0) continue;
-        for (int i = 0; i < 4; ++i) {
-          auto& [least, second] = gaps[i];
-          if (to_side[i] < least) {
-            second = least;
-            least = to_side[i];
-          } else {
-            second = std::min(second, to_side[i]);
-          }
-        }
-      }
-    }
     double pixels = 0.0;
-    for (const auto& [least, second] : gaps) {
-      if (least < kUnseenReach && second < kFar) {
-        pixels += std::clamp((second - least) / std::max(least, 1e-9), 0.0, 1.0);
-      }
-    }
+    for (int k = 0; k < footprints_.num_maps(); ++k) pixels += UnseenBeyond(k);
     return kUnseenPixels * pixels;
   }
 
@@ -132,6 +103,57 @@ class StateForecast {
     return affine_depth_.At(x, y, readback_.depth[readback_.Index(x, y)]);
   }
 
+  // The two outermost pixels of those that ask a map, on one of its sides: their distances from it.
+  struct Outermost {
+    double least = std::numeric_limits<double>::infinity(), second = least;  // texels
+    Eigen::Vector2d texel = Eigen::Vector2d::Zero();                         // of the first
+  };
+
+  double UnseenBeyond(int k) const {
+    const Eigen::Matrix<double, 3, 4>& map_from_screen = footprints_.map_from_screen(k);
+    const MapSize size = footprints_.size(k);
+    std::array<Outermost, 4> sides;
+    for (int y = 0; y < readback_.height(); ++y) {
+      for (int x = 0; x < readback_.width(); ++x) {
+        if (At(x, y) != needed_) continue;
+        const Eigen::Vector4d screen = Screen(x, y);
+        if (footprints_.MapAt(screen) != k) continue;
+        const Eigen::Vector3d map = map_from_screen * screen;
+        if (!(map.z() > 0.0)) continue;
+        const double u = map.x() / map.z(), v = map.y() / map.z();
+        const double to_side[4] = {u, size.width - u, v, size.height - v};
+        if (*std::min_element(to_side, to_side + 4) < 0.0) continue;
+        for (int i = 0; i < 4; ++i) {
+          Outermost& side = sides[i];
+          if (to_side[i] < side.least) {
+            side.second = side.least;
+            side.least = to_side[i];
+            side.texel = {u, v};
+          } else {
+            side.second = std::min(side.second, to_side[i]);
+          }
+        }
+      }
+    }
+    double pixels = 0.0;
+    for (int i = 0; i < 4; ++i) {
+      const Outermost& side = sides[i];
+      if (!(side.least < kUnseenReach && std::isfinite(side.second))) continue;
+      if (footprints_.num_maps() > 1 && GoesOnBeyond(k, i, side.texel)) continue;
+      pixels += std::clamp((side.second - side.least) / std::max(side.least, 1e-9), 0.0, 1.0);
+    }
+    return pixels;
+  }
+
+  // Whether another map holds the ray just outside of this one's side, beside a texel.
+  bool GoesOnBeyond(int k, int side, Eigen::Vector2d texel) const {
+    constexpr double kBeyond = 0.5;  // texels
+    const MapSize size = footprints_.size(k);
+    const double beyond[4] = {-kBeyond, size.width + kBeyond, -kBeyond, size.height + kBeyond};
+    texel(side / 2) = beyond[side];
+    return footprints_.IsHeldByOther(k, texel);
+  }
+
   Eigen::Vector4d Screen(int x, int y) const { return {x + 0.5, y + 0.5, AffineAt(x, y), 1.0}; }
 
   Eigen::Vector3d World(double column, double row, double d) const {
@@ -139,10 +161,15 @@ class StateForecast {
   }
 
   double WrongAt(int x, int y, State state) const {
-    const Eigen::Vector3d map = map_from_screen_ * Screen(x, y);
+    const Eigen::Vector4d screen = Screen(x, y);
+    const int asked = footprints_.MapAt(screen);
+    if (asked < 0) return state == needed_ ? 1.0 : 0.0;
+    const Eigen::Matrix<double, 3, 4>& map_from_screen = footprints_.map_from_screen(asked);
+    const MapSize size = footprints_.size(asked);
+    const Eigen::Vector3d map = map_from_screen * screen;
     const Eigen::Vector2d texel = map.hnormalized();
     const bool is_inside = map.z() > 0.0 && texel.x() >= 0.0 && texel.y() >= 0.0 &&
-                           texel.x() <= map_.width && texel.y() <= map_.height;
+                           texel.x() <= size.width && texel.y() <= size.height;
     if (!is_inside) return state == needed_ ? 1.0 : 0.0;
     const std::optional<PixelFootprint> pixel = footprints_.At(x, y);
     const double edge_on = edge_on_ * (state == State::kDark ? root_of_lit_share_ : 1.0);
@@ -152,10 +179,10 @@ class StateForecast {
     const PixelPlane plane = {x, y, pixel->gradient};
     const DepthGradient& d = plane.gradient;
     Eigen::Matrix3d map_from_plane;
-    map_from_plane.col(0) = map_from_screen_.col(0) + d.d_x * map_from_screen_.col(2);
-    map_from_plane.col(1) = map_from_screen_.col(1) + d.d_y * map_from_screen_.col(2);
-    map_from_plane.col(2) = map_from_screen_.col(3) +
-                            (d.d - d.d_x * (x + 0.5) - d.d_y * (y + 0.5)) * map_from_screen_.col(2);
+    map_from_plane.col(0) = map_from_screen.col(0) + d.d_x * map_from_screen.col(2);
+    map_from_plane.col(1) = map_from_screen.col(1) + d.d_y * map_from_screen.col(2);
+    map_from_plane.col(2) = map_from_screen.col(3) +
+                            (d.d - d.d_x * (x + 0.5) - d.d_y * (y + 0.5)) * map_from_screen.col(2);
     const Eigen::Matrix3d plane_from_map = map_from_plane.inverse();
     if (!plane_from_map.allFinite()) return edge_on;
     return MeanOverPlaces([&](const Eigen::Vector2d& delta) {
@@ -232,9 +259,7 @@ class StateForecast {
   const Readback& readback_;
   const PixelFootprints& footprints_;
   const AffineDepth& affine_depth_;
-  const Eigen::Matrix<double, 3, 4> map_from_screen_;
   const Eigen::Matrix4d world_from_screen_;
-  MapSize map_;
   State needed_;  // what the border answers wrongly; kBackground: nothing
   ScratchVector<State> states_;
   double root_of_lit_share_, edge_on_;
@@ -245,9 +270,8 @@ class StateForecast {
 absl::StatusOr<double> ForetellByState(const Readback& readback,
                                        const Light& light,
                                        const PixelFootprints& footprints,
-                                       MapSize map,
                                        std::optional<Border> border) {
-  const StateForecast forecast(readback, light, footprints, map, border);
+  const StateForecast forecast(readback, light, footprints, border);
   const int stride = ForecastStride(readback);
   const int first = std::max(1, stride / 2);
   double sum = 0.0;

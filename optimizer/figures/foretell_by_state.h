@@ -10,7 +10,6 @@
 #include "absl/status/statusor.h"
 #include "geometry/border.h"
 #include "geometry/light.h"
-#include "geometry/map_size.h"
 #include "optimizer/figures/pixel_footprint.h"
 #include "optimizer/readback/readback.h"
 
@@ -22,7 +21,6 @@ namespace lightfit {
 absl::StatusOr<double> ForetellByState(const Readback& readback,
                                        const Light& light,
                                        const PixelFootprints& footprints,
-                                       MapSize map,
                                        std::optional<Border> border);
 
 }  // namespace lightfit

@@ -1,0 +1,103 @@
+#include "partition/sphere_cells.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "base/stop.h"
+#include "optimizer/energy/reweighting.h"
+#include "partition/divided_maps.h"
+
+namespace lightfit {
+
+namespace {
+
+constexpr int kNumStarts = 8;
+constexpr int kMaxRounds = 30;
+
+// The centre that a direction is closest to.
+int ClosestTo(const ScratchVector<Eigen::Vector3d>& centres, const Eigen::Vector3d& direction) {
+  int closest = 0;
+  for (size_t k = 1; k < centres.size(); ++k) {
+    if (direction.dot(centres[k]) > direction.dot(centres[closest])) closest = static_cast<int>(k);
+  }
+  return closest;
+}
+
+// The first centre is one of the bins; each further one the bin that is furthest from all before.
+ScratchVector<Eigen::Vector3d> SpreadCentres(const ScratchVector<RayBin>& bins,
+                                             size_t first,
+                                             int count) {
+  ScratchVector<Eigen::Vector3d> centres = {bins[first].middle};
+  while (static_cast<int>(centres.size()) < count) {
+    const RayBin* furthest = nullptr;
+    double least_cos = std::numeric_limits<double>::infinity();
+    for (const RayBin& bin : bins) {
+      if (bin.hull.empty()) continue;
+      const double cos = bin.middle.dot(centres[ClosestTo(centres, bin.middle)]);
+      if (cos >= least_cos) continue;
+      least_cos = cos;
+      furthest = &bin;
+    }
+    if (furthest == nullptr) break;
+    centres.push_back(furthest->middle);
+  }
+  return centres;
+}
+
+// Lloyd's rounds: clusters, their means, and again.
+void MoveToMeans(const ScratchVector<RayBin>& bins, ScratchVector<Eigen::Vector3d>* centres) {
+  for (int round = 0; round < kMaxRounds && !StopRequested(); ++round) {
+    ScratchVector<Eigen::Vector3d> sums(centres->size(), Eigen::Vector3d::Zero());
+    for (const RayBin& bin : bins) {
+      sums[ClosestTo(*centres, bin.middle)] += bin.num_covered * bin.middle;
+    }
+    bool has_moved = false;
+    for (size_t k = 0; k < centres->size(); ++k) {
+      constexpr double kLeastLength = 1e-9;  // as good as a cluster all around, or an empty one
+      if (!(sums[k].norm() > kLeastLength)) continue;
+      const Eigen::Vector3d mean = sums[k].normalized();
+      constexpr double kStandsStill = 1e-12;
+      has_moved |= (mean - (*centres)[k]).squaredNorm() > kStandsStill;
+      (*centres)[k] = mean;
+    }
+    if (!has_moved) return;
+  }
+}
+
+// None where one of the cells has no map.
+Cells CellsAround(const CellFitter& fitter, const ScratchVector<Eigen::Vector3d>& centres) {
+  Cells cells(centres.size());
+  const ScratchVector<RayBin>& bins = fitter.rays().bins;
+  for (size_t i = 0; i < bins.size(); ++i) {
+    cells[ClosestTo(centres, bins[i].middle)].bins.push_back(static_cast<int>(i));
+  }
+  for (Cell& cell : cells) {
+    const std::optional<CellMap> map = fitter.Fit(cell.bins);
+    if (!map.has_value()) return {};
+    cell.map = *map;
+  }
+  return cells;
+}
+
+}  // namespace
+
+Cells ClusterCells(const CellFitter& fitter, int num_cells, double texels) {
+  const ScratchVector<RayBin>& bins = fitter.rays().bins;
+  BestOfRounds<Cells> best;
+  best.Offer(std::numeric_limits<double>::infinity(), Cells());
+  for (int start = 0; start < kNumStarts && !bins.empty() && !StopRequested(); ++start) {
+    const size_t first = start * bins.size() / kNumStarts;
+    if (bins[first].hull.empty()) continue;
+    ScratchVector<Eigen::Vector3d> centres = SpreadCentres(bins, first, num_cells);
+    MoveToMeans(bins, &centres);
+    Cells cells = CellsAround(fitter, centres);
+    if (cells.empty()) continue;
+    const double energy = DividedMaps(fitter, cells, texels).Energy();
+    best.Offer(energy, std::move(cells));
+  }
+  return std::move(best).Best();
+}
+
+}  // namespace lightfit
