@@ -76,8 +76,8 @@ Eigen::Vector2d TexelSeenAt(const SurfaceImage& image,
                             const Eigen::Vector2d& offset) {
   const SurfacePoint& point = image.pixels[pixel];
   const Eigen::Matrix4d world_from_screen = image.camera.WorldFromScreen();
-  const double x = pixel % image.camera.width + 0.5 + offset.x();
-  const double y = pixel / image.camera.width + 0.5 + offset.y();
+  const int column = pixel % image.camera.width, row = pixel / image.camera.width;
+  const double x = column + 0.5 + offset.x(), y = row + 0.5 + offset.y();
   const auto at_depth = [&](double d) -> Eigen::Vector3d {
     return (world_from_screen * Eigen::Vector4d(x, y, d, 1.0)).hnormalized();
   };
