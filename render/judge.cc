@@ -45,7 +45,8 @@ absl::Status ValidateJudgeOptions(const JudgeOptions& options) {
 
 Eigen::Vector2d MoveOfPhase(const JudgeOptions& options, int phase) {
   const int n = SideOf(options.phases);
-  return Eigen::Vector2d((phase % n + 0.5) / n - 0.5, (phase / n + 0.5) / n - 0.5);
+  const int column = phase % n, row = phase / n;
+  return Eigen::Vector2d((column + 0.5) / n - 0.5, (row + 0.5) / n - 0.5);
 }
 
 absl::StatusOr<ShadowImage> JudgeMatrix(const RayCaster& caster,

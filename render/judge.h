@@ -58,11 +58,6 @@ absl::Status ValidateJudgeOptions(const JudgeOptions& options);
 // options.
 Eigen::Vector2d MoveOfPhase(const JudgeOptions& options, int phase);
 
-// Whether a pixel of this true lighting is judged.
-inline bool IsJudged(Lighting truth) {
-  return truth == Lighting::kLit || truth == Lighting::kShadowed;
-}
-
 // Means over the phases; counts of pixels are rounded to whole ones.
 struct WrongPixels {
   int64_t ideal = 0;

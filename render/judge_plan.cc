@@ -61,13 +61,7 @@ absl::Status Validate(const SurfaceImage& image,
                       const Plan& plan,
                       const JudgeOptions& options) {
   constexpr int64_t kMaxTexels = int64_t{1} << 30;
-  if (truth.size() != image.pixels.size()) {
-    return absl::InvalidArgumentError(
-        absl::StrFormat("light \"%s\": truth has %d pixels, the image %d: want those of the image",
-                        light.name,
-                        truth.size(),
-                        image.pixels.size()));
-  }
+  if (absl::Status status = ValidateLighting(truth, image, light); !status.ok()) return status;
   int64_t sum = 0;
   for (const PlanMap& map : plan.maps) {
     const MapSize size = map.size;

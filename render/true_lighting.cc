@@ -1,5 +1,7 @@
 #include "render/true_lighting.h"
 
+#include "absl/strings/str_format.h"
+
 namespace lightfit {
 
 namespace {
@@ -33,6 +35,17 @@ std::vector<Lighting> TrueLighting(const RayCaster& caster,
         }
       });
   return lighting;
+}
+
+absl::Status ValidateLighting(absl::Span<const Lighting> truth,
+                              const SurfaceImage& image,
+                              const Light& light) {
+  if (truth.size() == image.pixels.size()) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrFormat("light \"%s\": truth has %d pixels, the image %d: want those of the image",
+                      light.name,
+                      truth.size(),
+                      image.pixels.size()));
 }
 
 LightingCounts CountLighting(const std::vector<Lighting>& lighting) {

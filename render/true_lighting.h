@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "absl/status/status.h"
+#include "absl/types/span.h"
 #include "geometry/light.h"
 #include "render/surface_image.h"
 
@@ -20,10 +22,20 @@ enum class Lighting : uint8_t {
   kShadowed
 };
 
+// Whether shadows are judged at such a pixel: its surface faces the light.
+inline bool IsJudged(Lighting truth) {
+  return truth == Lighting::kLit || truth == Lighting::kShadowed;
+}
+
 // One ray from each surface to the light, started RayCaster::Resolution() off the surface.
 std::vector<Lighting> TrueLighting(const RayCaster& caster,
                                    const SurfaceImage& image,
                                    const Light& light);
+
+// InvalidArgument for a lighting of another number of pixels than the image's.
+absl::Status ValidateLighting(absl::Span<const Lighting> truth,
+                              const SurfaceImage& image,
+                              const Light& light);
 
 struct LightingCounts {
   int64_t background = 0, facing_away = 0, lit = 0, shadowed = 0;

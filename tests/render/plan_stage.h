@@ -76,27 +76,61 @@ inline Plan Moved(Plan plan, const Eigen::Vector2d& texels) {
   return plan;
 }
 
-// A map of some part of what the camera sees: turned, warped, of some size and homogeneous scale.
+// A map of a part of what the camera sees. All of it is the square of side 2 around the origin; of
+// that the part is one of side 2 * half_side, turned and warped.
+inline PlanMap PartMap(const PlanStage& stage,
+                       const Eigen::Vector2d& middle,
+                       double half_side,
+                       double turn_rad,
+                       const Eigen::Vector2d& warp,
+                       MapSize size) {
+  Eigen::Matrix3d part_from_all = Eigen::Matrix3d::Identity();
+  part_from_all.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(turn_rad).toRotationMatrix() / half_side;
+  // MapAround() has texel (0, 0) in a corner.
+  part_from_all.topRightCorner<2, 1>() =
+      -(part_from_all.topLeftCorner<2, 2>() * (Eigen::Vector2d(1.0, 1.0) + middle));
+  Eigen::Matrix3d warped_from_part = Eigen::Matrix3d::Identity();
+  warped_from_part.row(2) << warp.x(), warp.y(), 1.0;
+  Eigen::Matrix3d map_from_warped;
+  map_from_warped << 0.5 * size.width, 0.0, 0.5 * size.width,  //
+      0.0, 0.5 * size.height, 0.5 * size.height,               //
+      0.0, 0.0, 1.0;
+  return PlanMapOf(Changed(map_from_warped * warped_from_part * part_from_all,
+                           MapAround(stage.image, stage.light, {2, 2})),
+                   size);
+}
+
+inline Eigen::Vector2d InSquare(Random& random, double half_side) {
+  const double x = random.Uniform(-half_side, half_side);
+  return {x, random.Uniform(-half_side, half_side)};
+}
+
+// Some part, of some size, warp and homogeneous scale.
 inline PlanMap RandomPart(const PlanStage& stage, Random& random) {
   const MapSize size = {static_cast<int>(random.LogUniform(20, 120)),
                         static_cast<int>(random.LogUniform(20, 120))};
-  // All that is seen, as the square of side 2 around the origin; then the part, likewise.
-  const Eigen::Matrix4d all = MapAround(stage.image, stage.light, {2, 2});
-  Eigen::Matrix3d part_from_all = Eigen::Matrix3d::Identity();
-  const double turn = random.Uniform(-M_PI, M_PI);
-  part_from_all.topLeftCorner<2, 2>() =
-      Eigen::Rotation2Dd(turn).toRotationMatrix() / random.LogUniform(0.4, 1.2);
-  part_from_all.topRightCorner<2, 1>() =
-      -(part_from_all.topLeftCorner<2, 2>() *
-        Eigen::Vector2d(1.0 + random.Uniform(-0.6, 0.6), 1.0 + random.Uniform(-0.6, 0.6)));
-  Eigen::Matrix3d map_from_part;
-  map_from_part << 0.5 * size.width, 0.0, 0.5 * size.width,  //
-      0.0, 0.5 * size.height, 0.5 * size.height,             //
-      0.0, 0.0, 1.0;
-  Eigen::Matrix3d warp = Eigen::Matrix3d::Identity();
-  warp.row(2) << random.Uniform(-0.2, 0.2), random.Uniform(-0.2, 0.2), 1.0;
-  const Eigen::Matrix3d map_from_all = map_from_part * warp * part_from_all;
-  return PlanMapOf(Changed(random.LogUniform(0.01, 100.0) * map_from_all, all), size);
+  const Eigen::Vector2d middle = InSquare(random, 0.6), warp = InSquare(random, 0.2);
+  const double half_side = random.LogUniform(0.4, 1.2);
+  PlanMap map = PartMap(stage, middle, half_side, random.Uniform(-M_PI, M_PI), warp, size);
+  map.map_from_world *= random.LogUniform(0.01, 100.0);
+  return map;
+}
+
+// Maps that each hold nearly all, warped to be densest in directions of their own; as dense as one
+// another in the middle, where all of their borders meet.
+inline Plan WarpedPlan(const PlanStage& stage, Random& random, int num_maps) {
+  Plan plan;
+  for (int k = 0; k < num_maps; ++k) {
+    const int width = static_cast<int>(random.LogUniform(40, 160));
+    const Eigen::Vector2d warp = InSquare(random, 0.3);
+    plan.maps.push_back(PartMap(stage,
+                                Eigen::Vector2d::Zero(),
+                                1.8,
+                                random.Uniform(-M_PI, M_PI),
+                                warp,
+                                {width, 6400 / width}));
+  }
+  return plan;
 }
 
 // Some parts; some of them with a half space that cuts through the scene.
