@@ -28,12 +28,14 @@ absl::StatusOr<MapSize> EqualSquares(MapSize budget, int num_maps, double margin
 Eigen::Matrix4d WithMargin(const Eigen::Matrix4d& map_from_world,
                            MapSize size,
                            double margin_texels) {
-  constexpr double kRounding = 1e-6;  // texels
-  const double margin = margin_texels + kRounding;
+  constexpr double kRounding = 1e-6;  // of the map's side: of a strong warp as well
+  const double margin_u = margin_texels + kRounding * size.width;
+  const double margin_v = margin_texels + kRounding * size.height;
   Eigen::Matrix4d inner_from_map = Eigen::Matrix4d::Identity();
-  inner_from_map(0, 0) = 1.0 - 2.0 * margin / size.width;
-  inner_from_map(1, 1) = 1.0 - 2.0 * margin / size.height;
-  inner_from_map(0, 3) = inner_from_map(1, 3) = margin;
+  inner_from_map(0, 0) = 1.0 - 2.0 * margin_u / size.width;
+  inner_from_map(1, 1) = 1.0 - 2.0 * margin_v / size.height;
+  inner_from_map(0, 3) = margin_u;
+  inner_from_map(1, 3) = margin_v;
   return inner_from_map * map_from_world;
 }
 

@@ -47,7 +47,7 @@ TEST(EqualSquares, HaveNoMoreThanTheLargestSide) {
 }
 
 TEST(WithMargin, ShowsTheSameWithinTheMargin) {
-  constexpr double kRounding = 2e-6;  // texels: what WithMargin() adds, and rounding
+  constexpr double kRounding = 2e-6;  // of the side: what WithMargin() adds, and rounding
   Random random(2);
   for (int i = 0; i < 100; ++i) {
     const MapSize size = {random.Int(20, 500), random.Int(20, 500)};
@@ -62,7 +62,7 @@ TEST(WithMargin, ShowsTheSameWithinTheMargin) {
           world_from_map * Eigen::Vector4d(share * size.width, share * size.height, 0.3, 1.0);
       const Eigen::Vector2d expected(margin + share * (size.width - 2.0 * margin),
                                      margin + share * (size.height - 2.0 * margin));
-      EXPECT_THAT((moved * world).hnormalized().head<2>(), MatrixNear(expected, kRounding));
+      EXPECT_THAT((moved * world).hnormalized().head<2>(), MatrixNear(expected, 500.0 * kRounding));
     }
   }
 }
