@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/methods/random_input.h"
+#include "tests/partition/published/degenerate_input.h"
 #include "tests/testing/matchers.h"
 #include "tests/testing/random_cases.h"
 
@@ -170,6 +171,16 @@ TEST(LightPartition, LampAmongItsReceiversHasNone) {
   input.light = Light::Point("lamp", {0.0, 0.0, -8.0});
   EXPECT_THAT(LightPartitionPlan(input),
               StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("lamp")));
+}
+
+TEST(LightPartition, DegenerateInputGivesPlansOrReasons) {
+  Random random(11);
+  int num_plans = 0;
+  for (int i = 0; i < 200; ++i) {
+    const MethodInput input = testing::DegenerateInput(random);
+    num_plans += testing::IsPlanOrReason(LightPartitionPlan(input), input) ? 1 : 0;
+  }
+  EXPECT_GT(num_plans, 50);
 }
 
 TEST(LightPartition, SaysWhatIsWrong) {
