@@ -84,6 +84,7 @@ class Refocus {
 
   absl::StatusOr<RefocusRound> SingleMap(int k) const {
     RefocusRound round;
+    round.only = k;
     absl::StatusOr<PlanMap> map = MapOf(k, 1, {});
     if (!map.ok()) return map.status();
     round.plan.maps.push_back(*std::move(map));

@@ -40,6 +40,7 @@ struct RefocusOptions {
 struct RefocusRound {
   Plan plan;
   Eigen::RowVector4d plane;  // >= 0 on the first map's side, world; 0 where one map remains
+  int only = -1;             // of the methods whose map remains, 0 or 1
   double texel_side = 0.0;   // mean over the view, pixels
 };
 

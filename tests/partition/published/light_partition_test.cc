@@ -166,6 +166,32 @@ TEST(LightPartition, SunOverheadHasTheFrustumsOwnTrapezoid) {
   EXPECT_NEAR(partition->trapezoid.length, 19.0, 1e-9);
 }
 
+TEST(LightPartition, BaseOfATriangleIsAThousandthOfTheFarOne) {
+  // A square plate with a corner towards the viewer and the far corner cut off, from above.
+  MethodInput input;
+  input.light = Light::Directional("sun", {0.0, -1.0, 0.0});
+  const Eigen::Vector3d eye(-5.0, 0.0, -5.0);
+  input.camera =
+      *LookAtCamera(eye, Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitY(), 1.0, 256, 256);
+  input.camera.near = 1.0;
+  input.camera.far = eye.norm() + 0.5;
+  input.receivers = {Eigen::Vector3d(-1.0, -0.1, -1.0), Eigen::Vector3d(1.0, 0.1, 1.0)};
+  input.map = {300, 300};
+  const auto partition = PartitionLight(input);
+  ASSERT_THAT(partition, IsOk());
+  const Trapezoid& trapezoid = partition->trapezoid;
+  EXPECT_NEAR(trapezoid.slope, 1.0, 1e-9);
+  EXPECT_NEAR(trapezoid.length, std::sqrt(2.0) + 0.5, 1e-9);
+  EXPECT_NEAR(trapezoid.base, 1e-3 * 2.0 * trapezoid.length, 1e-9);
+  const auto plan = LightPartitionPlan(input);
+  ASSERT_THAT(plan, IsOk());
+  const auto look_up = PlanLookUp::Create(*plan, input.light);
+  ASSERT_THAT(look_up, IsOk());
+  for (const Eigen::Vector3d& point : partition->body.points) {
+    EXPECT_GE(look_up->At(point).map, 0);
+  }
+}
+
 TEST(LightPartition, LampAmongItsReceiversHasNone) {
   MethodInput input = LevelView({0.0, -1.0, 0.0});
   input.light = Light::Point("lamp", {0.0, 0.0, -8.0});

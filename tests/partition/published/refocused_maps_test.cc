@@ -90,7 +90,7 @@ TEST(RefocusMaps, ALampsMapsSwapSidesAndTheBestRoundIsKept) {
 
 TEST(RefocusMaps, EveryReceiverIsServedByTheMapOfItsSide) {
   int num_suns = 0, num_lamps = 0;
-  for (uint64_t seed = 1; seed <= 150; ++seed) {
+  for (uint64_t seed = 1; seed <= 100; ++seed) {
     Random random(seed);
     MethodInput input = RandomInput(random);
     input.map = {random.Int(100, 600), random.Int(100, 600)};
@@ -104,8 +104,12 @@ TEST(RefocusMaps, EveryReceiverIsServedByTheMapOfItsSide) {
     ASSERT_LE(result->rounds.size(), static_cast<size_t>(options.max_rounds));
     for (const RefocusRound& round : result->rounds) {
       ASSERT_LE(NumTexels(round.plan), int64_t{input.map.width} * input.map.height);
-      if (round.plan.maps.size() != 2) continue;
+      ASSERT_EQ(round.plan.maps.size(), round.only < 0 ? 2u : 1u);
+      if (round.only >= 0) continue;
       const bool is_sun = input.light.kind == Light::Kind::kDirectional;
+      for (const PlanMap& map : round.plan.maps) {
+        EXPECT_EQ(map.half_spaces.size(), is_sun ? 1u : 0u);
+      }
       ++(is_sun ? num_suns : num_lamps);
       const auto look_up = PlanLookUp::Create(round.plan, input.light, options.margin_texels);
       ASSERT_THAT(look_up, IsOk());
@@ -133,7 +137,7 @@ TEST(RefocusMaps, EveryReceiverIsServedByTheMapOfItsSide) {
 
 TEST(RefocusMaps, KeepTheRoundWithTheLeastTexels) {
   int num_later = 0;
-  for (uint64_t seed = 1; seed <= 30; ++seed) {
+  for (uint64_t seed = 1; seed <= 15; ++seed) {
     Random random(seed);
     const MethodInput input = RandomInput(random);
     const auto result = RefocusMaps(input);
@@ -158,7 +162,7 @@ TEST(RefocusMaps, KeepTheRoundWithTheLeastTexels) {
       EXPECT_EQ(plan->maps[k].half_spaces.size(), best.maps[k].half_spaces.size());
     }
   }
-  EXPECT_GT(num_later, 10);
+  EXPECT_GT(num_later, 5);
 }
 
 TEST(RefocusMaps, OneMapRemainsWithAllTexelsWhereTheOtherIsNowhereDenser) {
@@ -173,6 +177,7 @@ TEST(RefocusMaps, OneMapRemainsWithAllTexelsWhereTheOtherIsNowhereDenser) {
   EXPECT_EQ(map.size.width, 300);
   EXPECT_EQ(map.size.height, 300);
   EXPECT_TRUE(map.half_spaces.empty());
+  EXPECT_EQ(result->rounds[0].only, 0);
 
   // Two maps without a warp: the tighter one is denser everywhere, whichever comes second.
   input = LevelView({0.2, -1.0, 0.1});
@@ -184,6 +189,7 @@ TEST(RefocusMaps, OneMapRemainsWithAllTexelsWhereTheOtherIsNowhereDenser) {
     ASSERT_THAT(result, IsOk());
     const Plan& plan = result->rounds[result->best].plan;
     ASSERT_EQ(plan.maps.size(), 1u);
+    EXPECT_EQ(result->rounds[result->best].only, is_tight_first ? 0 : 1);
     RefocusOptions focused;
     focused.first = focused.second = Method::kFocused;
     const auto expected = RefocusMaps(input, focused);

@@ -105,7 +105,7 @@ TEST(TrapezoidRows, WasteIsTheRectanglesShareOutsideOfTheTrapezoid) {
 TEST(TrapezoidRows, AreInNoMoreColumnsThanCellsAreTooWide) {
   Random random(3);
   int num_several = 0;
-  for (int i = 0; i < 500; ++i) {
+  for (int i = 0; i < 3000; ++i) {
     const Trapezoid trapezoid = RandomTrapezoid(random);
     const RowOptions options = RandomOptions(random);
     const std::vector<TrapezoidRow> rows = TrapezoidRows(trapezoid, options);
@@ -115,6 +115,11 @@ TEST(TrapezoidRows, AreInNoMoreColumnsThanCellsAreTooWide) {
       EXPECT_GE(row.num_columns, 1);
       EXPECT_LE(row.num_columns, options.max_columns);
       const double most = (1.0 + options.sigma) * row.length();
+      if (&row != &rows.back()) {
+        // N_w of the paper, but for quotients that are whole numbers.
+        const double wanted = std::ceil(row.width / most - 1e-9);
+        EXPECT_EQ(row.num_columns, std::min(wanted, 1.0 * options.max_columns));
+      }
       if (row.num_columns < options.max_columns && &row != &rows.back()) {
         EXPECT_LE(row.width / row.num_columns, most * (1.0 + kRounding));
       }
