@@ -140,8 +140,10 @@ TEST(RefocusMaps, KeepTheRoundWithTheLeastTexels) {
   for (uint64_t seed = 1; seed <= 15; ++seed) {
     Random random(seed);
     const MethodInput input = RandomInput(random);
-    const auto result = RefocusMaps(input);
-    const auto plan = SeparatingPlanePlan(input);
+    RefocusOptions options;
+    options.max_rounds = 6;
+    const auto result = RefocusMaps(input, options);
+    const auto plan = SeparatingPlanePlan(input, options);
     ASSERT_EQ(result.ok(), plan.ok());
     if (!result.ok()) continue;
     const std::vector<ViewGridPoint> grid = ViewGrid(input);
