@@ -169,7 +169,11 @@ TEST(FitPlan, ChoosesWhatIsForetoldToBeLeastWrong) {
         for (const LightMatrix& map : other->maps) maps.push_back({map.map_from_world, map.map});
         const auto share = ForetellWrongShare(at.readback, light, maps, {}, other->border);
         ASSERT_THAT(share, IsOk());
-        EXPECT_LE(*chosen->wrong_share, *share) << light.name << " seed " << seed;
+        // More maps are taken for 5 % less only, once from 1 to 2 and once from 2 to 4.
+        EXPECT_LE(0.95 * 0.95 * *chosen->wrong_share, *share) << light.name << " seed " << seed;
+        if (other->maps.size() <= chosen->maps.size()) {
+          EXPECT_LE(*chosen->wrong_share, *share) << light.name << " seed " << seed;
+        }
         ++num_plans;
       }
     }
