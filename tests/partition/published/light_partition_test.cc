@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "tests/methods/random_input.h"
-#include "tests/partition/published/degenerate_input.h"
+#include "tests/partition/published/plan_or_reason.h"
 #include "tests/testing/matchers.h"
 #include "tests/testing/random_cases.h"
 
@@ -199,11 +199,11 @@ TEST(LightPartition, LampAmongItsReceiversHasNone) {
               StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("lamp")));
 }
 
-TEST(LightPartition, DegenerateInputGivesPlansOrReasons) {
+TEST(LightPartition, HardInputGivesPlansOrReasons) {
   Random random(11);
   int num_plans = 0;
   for (int i = 0; i < 200; ++i) {
-    const MethodInput input = testing::DegenerateInput(random);
+    const MethodInput input = testing::HardInput(random);
     num_plans += testing::IsPlanOrReason(LightPartitionPlan(input), input) ? 1 : 0;
   }
   EXPECT_GT(num_plans, 50);

@@ -13,7 +13,7 @@
 #include "partition/published/separating_plane.h"
 #include "partition/published/view_grid.h"
 #include "tests/methods/random_input.h"
-#include "tests/partition/published/degenerate_input.h"
+#include "tests/partition/published/plan_or_reason.h"
 #include "tests/testing/matchers.h"
 #include "tests/testing/random_cases.h"
 
@@ -213,11 +213,11 @@ TEST(RefocusMaps, WithNothingInViewOneMapHasAllReceivers) {
   }
 }
 
-TEST(RefocusMaps, DegenerateInputGivesPlansOrReasons) {
+TEST(RefocusMaps, HardInputGivesPlansOrReasons) {
   Random random(11);
   int num_plans = 0;
   for (int i = 0; i < 200; ++i) {
-    const MethodInput input = testing::DegenerateInput(random);
+    const MethodInput input = testing::HardInput(random);
     num_plans += testing::IsPlanOrReason(SeparatingPlanePlan(input), input) ? 1 : 0;
   }
   EXPECT_GT(num_plans, 50);

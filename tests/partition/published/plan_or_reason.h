@@ -1,4 +1,4 @@
-// tests/partition/published/degenerate_input.h
+// tests/partition/published/plan_or_reason.h
 //
 // Where all goes wrong at once: flat boxes, edge-on and aligned lights, lights at the eye, points.
 // In:   Random.
@@ -16,7 +16,7 @@
 
 namespace lightfit::testing {
 
-inline MethodInput DegenerateInput(Random& random) {
+inline MethodInput HardInput(Random& random) {
   MethodInput input = RandomInput(random);
   input.map = {random.Int(20, 600), random.Int(20, 600)};
   const Eigen::Vector3d eye = EyePosition(input.camera);
