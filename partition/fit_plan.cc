@@ -1,22 +1,17 @@
 #include "partition/fit_plan.h"
 
-#include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "absl/strings/str_format.h"
 #include "base/stop.h"
-#include "geometry/light_map.h"
-#include "geometry/ray_maps.h"
 #include "optimizer/choose_fit.h"
 #include "optimizer/figures/foretell.h"
 #include "optimizer/fit.h"
-#include "optimizer/fit_matrix.h"
 #include "partition/divided_maps.h"
 #include "partition/find_cells.h"
+#include "partition/finish_plan.h"
 #include "partition/sphere_cells.h"
 
 namespace lightfit {
@@ -30,15 +25,6 @@ constexpr double kMoreMapsBelow = 0.95;
 MapSize SquareOf(int64_t texels) {
   const int side = static_cast<int>(std::sqrt(static_cast<double>(texels)));
   return {side, side};
-}
-
-// Of about this shape, and of no more texels.
-MapSize WholeSize(const CellMap& map, double texels) {
-  const double aspect = map.width / map.height;
-  const int width = std::clamp(
-      static_cast<int>(std::lround(std::sqrt(texels * aspect))), 1, static_cast<int>(texels));
-  const int height = std::max(1, static_cast<int>(texels / width));
-  return {std::min(width, kMaxMapSide), std::min(height, kMaxMapSide)};
 }
 
 LightPlan PlanOfOne(const LightMatrix& matrix) {
@@ -63,114 +49,6 @@ absl::StatusOr<LightPlan> PlanOfOneMap(const PlanOptions& options, const From&..
   if (!matrix.ok()) return matrix.status();
   return PlanOfOne(*matrix);
 }
-
-// Makes the matrices of fitted cells.
-class Finisher {
- public:
-  Finisher(const LightView& view, const CellFitter& fitter, const PlanOptions& options)
-      : view_(view), fitter_(fitter), options_(options) {}
-
-  absl::StatusOr<LightPlan> Finish(const Cells& cells) const {
-    LightPlan plan;
-    plan.light_name = view_.light->name;
-    plan.border = view_.border;
-    plan.facing = view_.facing();
-    ScratchVector<MapOfCell> maps;
-    const ScratchVector<double> texels =
-        DivideTexels(fitter_, cells, static_cast<double>(options_.texels));
-    for (size_t k = 0; k < cells.size(); ++k) {
-      const MapSize size = options_.each.value_or(WholeSize(cells[k].map, texels[k]));
-      std::optional<Eigen::Matrix3d> map_from_ray = fitter_.MapOfSize(
-          cells[k].bins, cells[k].map, size, options_.guard_texels + options_.fit.margin_texels);
-      const std::optional<CellCover> cover = CoverBins(fitter_.rays(), cells[k].bins, *view_.light);
-      if (!map_from_ray.has_value() || !cover.has_value()) continue;
-      maps.push_back({Unmirrored(*map_from_ray, size), size, *cover, NearOf(cells[k], *cover)});
-    }
-    const ScratchVector<Samples> samples = SamplesByMap(maps);
-    for (size_t k = 0; k < maps.size(); ++k) {
-      absl::StatusOr<LightMatrix> matrix = MatrixOf(maps[k], samples[k]);
-      if (!matrix.ok()) return matrix.status();
-      plan.energy += matrix->figures.energy;
-      plan.maps.push_back(*std::move(matrix));
-    }
-    if (absl::Status status = CheckStop(*view_.light); !status.ok()) return status;
-    if (plan.maps.empty()) {
-      return absl::FailedPreconditionError(absl::StrFormat(
-          "light \"%s\": %d texels are too few for any map", view_.light->name, options_.texels));
-    }
-    return plan;
-  }
-
- private:
-  struct MapOfCell {
-    Eigen::Matrix3d map_from_ray;  // of ServedRays' rays
-    MapSize size;
-    CellCover cover;
-    double near;  // least X'_3 of a covered receiver in the cover's rays; point lights
-  };
-
-  double NearOf(const Cell& cell, const CellCover& cover) const {
-    if (view_.light->kind != Light::Kind::kPoint) return 0.0;
-    const Eigen::Matrix3d light_from_ray = fitter_.rays().normalized_from_ray.inverse();
-    double near = std::numeric_limits<double>::infinity();
-    for (const int index : cell.bins) {
-      const RayBin& bin = fitter_.rays().bins[index];
-      for (const Eigen::Vector3d& ray : bin.hull) {
-        const double unit = (light_from_ray * ray).norm();
-        near = std::min(near, bin.nearest * cover.normalized_from_ray.row(2).dot(ray) / unit);
-      }
-    }
-    return near;
-  }
-
-  // The boundary samples that ask each map, in the rays of its cover.
-  ScratchVector<Samples> SamplesByMap(const ScratchVector<MapOfCell>& maps) const {
-    ScratchVector<Samples> by_map;
-    for (const MapOfCell& map : maps) {
-      Samples& samples = by_map.emplace_back();
-      samples.ray_from_screen = map.cover.normalized_from_ray * view_.samples.ray_from_screen;
-      samples.counts = view_.samples.counts;
-      samples.counts.used = 0;
-    }
-    ScratchVector<RayMap> ray_maps;
-    for (const MapOfCell& map : maps) {
-      ray_maps.push_back(RayMap(map.map_from_ray, map.size.width, map.size.height));
-    }
-    for (size_t i = 0; i < view_.samples.size(); ++i) {
-      const int asked = DensestAt(ray_maps, view_.samples.At(i).X);
-      if (asked < 0) continue;
-      by_map[asked].AppendFrom(view_.samples, i);
-      ++by_map[asked].counts.used;
-    }
-    return by_map;
-  }
-
-  absl::StatusOr<LightMatrix> MatrixOf(const MapOfCell& map, const Samples& samples) const {
-    const ServedRays& rays = fitter_.rays();
-    const Eigen::Matrix3d cover_from_light =
-        map.cover.normalized_from_ray * rays.normalized_from_ray;
-    Summary summary;
-    summary.metric = WeightsOf(options_.fit.metric, options_.fit.along_edge_share);
-    summary.facing = view_.facing();
-    summary.counts = samples.counts;
-    summary.cover.normalized_from_ray = cover_from_light;
-    summary.cover.hull = map.cover.hull;
-    summary.cover.border = view_.border;
-    summary.cover.depth = rays.distance;
-    if (view_.light->kind == Light::Kind::kPoint) {
-      // Nothing is further along the third row than its length times the distance.
-      summary.cover.depth = {map.near, cover_from_light.row(2).norm() * rays.distance.far};
-    }
-    const SearchInputs inputs = {
-        *view_.light, summary, samples.size() > 0 ? &samples : nullptr, view_.surfaces};
-    return MatrixOfMap(
-        inputs, map.map_from_ray * map.cover.normalized_from_ray.inverse(), map.size, options_.fit);
-  }
-
-  const LightView& view_;
-  const CellFitter& fitter_;
-  const PlanOptions& options_;
-};
 
 // The best plan so far, by what is foretold where that is asked for.
 class Choice {
@@ -216,7 +94,6 @@ class BorderPlanner {
       : view_(view),
         options_(options),
         fitter_(rays, *view.light, fit),
-        finisher_(view, fitter_, options),
         grown_(GrowCells(fitter_, options.max_maps)) {}
 
   // FailedPrecondition where there is none of so many maps.
@@ -240,7 +117,7 @@ class BorderPlanner {
     }
     cells = AlternateCells(fitter_, cells, texels);
     if (absl::Status status = CheckStop(*view_.light); !status.ok()) return status;
-    return finisher_.Finish(cells);
+    return FinishPlan(view_, fitter_, cells, options_);
   }
 
  private:
@@ -276,7 +153,6 @@ class BorderPlanner {
   const LightView& view_;
   const PlanOptions& options_;
   CellFitter fitter_;
-  Finisher finisher_;
   ScratchVector<Cells> grown_;
 };
 
