@@ -12,9 +12,8 @@
 #include "base/stop.h"
 #include "geometry/convex_hull.h"
 #include "optimizer/energy/footprint.h"
-#include "optimizer/figures/forecast_places.h"
-#include "optimizer/readback/covered_surfaces.h"
 #include "optimizer/readback/needed_surfaces.h"
+#include "partition/pixel_rays.h"
 
 namespace lightfit {
 
@@ -29,51 +28,6 @@ struct Item {
   Eigen::Vector3d direction;  // of its ray, unit
   int x = 0, y = 0;           // of a covered pixel
   int boundary = -1;          // index in the view's samples; -1 for a covered pixel
-};
-
-// A pixel's own plane as its depth tells it, or nothing.
-class PixelPlanes {
- public:
-  PixelPlanes(const LightView& view, const FitOptions& fit)
-      : surfaces_(*view.surfaces),
-        options_(fit.samples),
-        screen_from_world_(surfaces_.world_from_screen.inverse()),
-        light_position_(view.light->HomogeneousPosition()) {
-    options_.use_outlines = true;
-  }
-
-  // In the image's outermost rows and columns, which have no differences of their own, that of the
-  // pixel beside it, if it is on the same plane.
-  std::optional<DepthGradient> At(int x, int y) const {
-    const Readback& readback = surfaces_.readback;
-    const int inner_x = std::clamp(x, 1, readback.width() - 2);
-    const int inner_y = std::clamp(y, 1, readback.height() - 2);
-    DepthGradient gradient;
-    if (!DepthGradientAt(readback, surfaces_.affine_depth, options_, inner_x, inner_y, &gradient)) {
-      return std::nullopt;
-    }
-    if (inner_x == x && inner_y == y) return gradient;
-    const double d = surfaces_.affine_depth.At(x, y, readback.depth[readback.Index(x, y)]);
-    if (!IsOnSurface(x, y, d, {inner_x, inner_y, gradient})) return std::nullopt;
-    gradient.d = d;
-    return gradient;
-  }
-
-  // Whether shadows can be seen on it: neither edge-on nor turned away, from light or eye.
-  bool ShowsShadows(int x, int y, const DepthGradient& gradient) const {
-    const bool orthographic = surfaces_.readback.camera.orthographic;
-    const Eigen::Vector3d normal = SurfaceNormal(screen_from_world_, orthographic, x, y, gradient);
-    const Eigen::Vector4d screen(x + 0.5, y + 0.5, gradient.d, 1.0);
-    const Eigen::Vector3d position = (surfaces_.world_from_screen * screen).hnormalized();
-    const Eigen::Vector3d to_light = light_position_.head<3>() - light_position_.w() * position;
-    return normal.dot(to_light) > options_.min_cos_light * to_light.norm();
-  }
-
- private:
-  const Surfaces& surfaces_;
-  SampleOptions options_;
-  Eigen::Matrix4d screen_from_world_;
-  Eigen::Vector4d light_position_;
 };
 
 // Sorts items into a tree of halves and calls visit(begin, end) for each leaf, left to right.
@@ -131,9 +85,7 @@ class Finder {
         options_(options),
         surfaces_(*view.surfaces),
         metric_(WeightsOf(fit.metric, fit.along_edge_share)),
-        planes_(view, fit),
-        ray_from_screen_(view.normalized_from_ray() * RayFromWorld(*view.light) *
-                         surfaces_.world_from_screen) {
+        pixels_(view, fit.samples) {
     const bool all =
         fit.cover == Cover::kReceivers || (view.cover.ok() && view.cover->nothing_to_cover);
     if (!all) needed_.emplace(surfaces_, *view.light, view.border);
@@ -157,23 +109,9 @@ class Finder {
   }
 
  private:
-  Eigen::Vector3d RayOf(double x, double y, double d) const {
-    return ray_from_screen_ * Eigen::Vector4d(x, y, d, 1.0);
-  }
-
   void CollectItems() {
     const Readback& readback = surfaces_.readback;
-    const Eigen::Vector4d light = view_.light->HomogeneousPosition();
-    DepthRange& distance = result_.distance;
-    distance = {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-    ForEachTile(surfaces_.tiles.grids[0], [&](const DepthTile& tile) {
-      for (const Eigen::Vector4d& corner : Corners(tile)) {
-        const Eigen::Vector3d world = (surfaces_.world_from_screen * corner).hnormalized();
-        const double at =
-            light.w() > 0.0 ? (world - light.head<3>()).norm() : -light.head<3>().dot(world);
-        distance = {std::min(distance.near, at), std::max(distance.far, at)};
-      }
-    });
+    result_.distance = DistancesFromLight(surfaces_, *view_.light);
     const uint32_t bit = uint32_t{1} << view_.light->shadow_bit;
     for (int y = 0; y < readback.height() && !StopRequested(); ++y) {
       for (int x = 0; x < readback.width(); ++x) {
@@ -181,7 +119,7 @@ class Finder {
         if (needed_.has_value() && (needed_->words()[pixel] & bit) == 0) continue;
         if (!surfaces_.affine_depth.IsSurface(readback.depth[pixel])) continue;
         const double d = surfaces_.affine_depth.At(x, y, readback.depth[pixel]);
-        items_.push_back({RayOf(x + 0.5, y + 0.5, d).normalized(), x, y, -1});
+        items_.push_back({pixels_.RayOf(x + 0.5, y + 0.5, d).normalized(), x, y, -1});
       }
     }
     result_.num_covered = static_cast<int64_t>(items_.size());
@@ -195,6 +133,7 @@ class Finder {
   void AddBin(size_t begin, size_t end) {
     RayBin bin;
     bin.samples_begin = static_cast<int>(result_.samples.size());
+    bin.pixels_begin = static_cast<int>(result_.pixels.size());
     bin.middle = Eigen::Vector3d::Zero();
     ScratchVector<Eigen::Vector3d> rays;
     for (size_t i = begin; i < end; ++i) {
@@ -205,6 +144,7 @@ class Finder {
         ++result_.num_boundary;
         continue;
       }
+      result_.pixels.push_back({item.x, item.y});
       const double distance = DistanceOf(item);
       bin.nearest = bin.num_covered == 0 ? distance : std::min(bin.nearest, distance);
       ++bin.num_covered;
@@ -212,6 +152,7 @@ class Finder {
     }
     bin.middle.normalize();
     bin.samples_end = static_cast<int>(result_.samples.size());
+    bin.pixels_end = static_cast<int>(result_.pixels.size());
     if (!rays.empty()) bin.hull = HullOf(rays, bin.middle);
     result_.bins.push_back(std::move(bin));
   }
@@ -227,31 +168,17 @@ class Finder {
 
   // The rays of a covered pixel's corners, and its sample.
   void AddCovered(const Item& item, ScratchVector<Eigen::Vector3d>* rays) {
-    const double x = item.x + 0.5, y = item.y + 0.5;
-    const std::optional<DepthGradient> plane = planes_.At(item.x, item.y);
-    if (!plane.has_value()) {
-      const double depth = surfaces_.readback.depth[surfaces_.readback.Index(item.x, item.y)];
-      rays->push_back(RayOf(x, y, surfaces_.affine_depth.At(item.x, item.y, depth)));
-      return;
-    }
-    const bool orthographic = surfaces_.readback.camera.orthographic;
-    const double h = options_.corner;
-    for (const double dx : {-h, h}) {
-      for (const double dy : {-h, h}) {
-        double d = plane->d + dx * plane->d_x + dy * plane->d_y;
-        // A plane nearly edge-on to the eye reaches its horizon within the pixel.
-        constexpr double kMostChange = 2.0;
-        if (!orthographic) d = std::clamp(d, plane->d / kMostChange, plane->d * kMostChange);
-        rays->push_back(RayOf(x + dx, y + dy, d));
-      }
-    }
+    const std::optional<DepthGradient> plane = pixels_.PlaneAt(item.x, item.y);
+    pixels_.AddCorners(item.x, item.y, plane, options_.corner, rays);
+    if (!plane.has_value()) return;
     const bool counts = item.x % floor_stride_ == 0 && item.y % floor_stride_ == 0;
-    if (!counts || !planes_.ShowsShadows(item.x, item.y, *plane)) return;
+    if (!counts || !pixels_.ShowsShadows(item.x, item.y, *plane)) return;
     // math.md (11), (1)
     Sample sample;
-    sample.X = RayOf(x, y, plane->d);
-    const Eigen::Vector3d T1 = ray_from_screen_.col(0) + plane->d_x * ray_from_screen_.col(2);
-    const Eigen::Vector3d T2 = ray_from_screen_.col(1) + plane->d_y * ray_from_screen_.col(2);
+    const Eigen::Matrix<double, 3, 4>& ray_from_screen = pixels_.ray_from_screen();
+    sample.X = pixels_.RayOf(item.x + 0.5, item.y + 0.5, plane->d);
+    const Eigen::Vector3d T1 = ray_from_screen.col(0) + plane->d_x * ray_from_screen.col(2);
+    const Eigen::Vector3d T2 = ray_from_screen.col(1) + plane->d_y * ray_from_screen.col(2);
     const double V = sample.X.dot(T1.cross(T2));
     sample.D.row(0) = T2.cross(sample.X) / V;
     sample.D.row(1) = sample.X.cross(T1) / V;
@@ -289,8 +216,7 @@ class Finder {
   const ServedRaysOptions& options_;
   const Surfaces& surfaces_;
   MetricWeights metric_;
-  PixelPlanes planes_;
-  Matrix34d ray_from_screen_;
+  PixelRays pixels_;
   std::optional<NeededSurfaces> needed_;  // nothing: all surfaces
   int floor_stride_ = 1;
   ScratchVector<Item> items_;

@@ -40,6 +40,7 @@ struct RayBin {
   // The extreme of the rays to cover, of whatever length; none where the bin has samples only.
   ScratchVector<Eigen::Vector3d> hull;
   int samples_begin = 0, samples_end = 0;  // in ServedRays::samples
+  int pixels_begin = 0, pixels_end = 0;    // the covered ones, in ServedRays::pixels
   int num_covered = 0;                     // pixels
   double nearest = 0.0;                    // of the covered ones, from a point light; world units
 };
@@ -53,9 +54,10 @@ struct ServedRays {
   bool has_single_cover = false;
 
   ScratchVector<RayBin> bins;
-  ScratchVector<RaySample> samples;  // by bin
-  int num_boundary = 0;              // of them at shadow edges; the others are covered pixels
-  int64_t num_covered = 0;           // pixels
+  ScratchVector<RaySample> samples;       // by bin
+  ScratchVector<Eigen::Vector2i> pixels;  // to cover, by bin: column and row
+  int num_boundary = 0;                   // of them at shadow edges; the others are covered pixels
+  int64_t num_covered = 0;                // pixels
   DepthRange distance;  // of all receivers: from a point light, or along the direction of travel
 };
 
