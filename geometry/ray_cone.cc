@@ -120,6 +120,21 @@ std::optional<Eigen::Vector3d> FeasibleAxis(const UnitRaySum& rays, LowestUnitRa
   return axis;
 }
 
+namespace {
+
+// Drops vertices that nothing but rounding keeps apart from the one before: edges between them have
+// any direction, and whoever goes around the hull by directions of edges gets lost.
+void DropCoincident(Polygon* hull) {
+  constexpr double kLeastEdge = 1e-12;  // in a hull of extent 2
+  const auto is_close = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    return (a - b).cwiseAbs().maxCoeff() < kLeastEdge;
+  };
+  hull->erase(std::unique(hull->begin(), hull->end(), is_close), hull->end());
+  while (hull->size() > 3 && is_close(hull->back(), hull->front())) hull->pop_back();
+}
+
+}  // namespace
+
 std::optional<Eigen::Matrix3d> NormalizeRays(const Eigen::Matrix3d& frame_from_ray, Polygon* hull) {
   const Parallelogram rectangle = MinAreaRectangle(*hull);
   const double length_u = rectangle.edge_u.norm();
@@ -139,6 +154,7 @@ std::optional<Eigen::Matrix3d> NormalizeRays(const Eigen::Matrix3d& frame_from_r
   normalized_from_frame.topLeftCorner<2, 2>() = square_from_plane;
   normalized_from_frame.topRightCorner<2, 1>() = -square_from_plane * origin;
   for (Eigen::Vector2d& vertex : *hull) vertex = square_from_plane * (vertex - origin);
+  DropCoincident(hull);
   return normalized_from_frame * frame_from_ray;
 }
 

@@ -47,7 +47,8 @@ std::optional<Eigen::Vector3d> FeasibleAxis(const UnitRaySum& rays, LowestUnitRa
 // the rectangle's own centre may lie outside the hull and would leave the axes unbounded.
 //
 // Returns normalized_from_ray = N frame_from_ray, det N > 0, or nothing if the hull has no area:
-// all receivers in one plane through the light. `hull` is replaced by its image.
+// all receivers in one plane through the light. `hull` is replaced by its image, less vertices that
+// only rounding keeps apart.
 std::optional<Eigen::Matrix3d> NormalizeRays(const Eigen::Matrix3d& frame_from_ray, Polygon* hull);
 
 // A hull thinner than this share of its length has no area: single-precision depth leaves about as

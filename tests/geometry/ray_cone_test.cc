@@ -205,6 +205,28 @@ TEST(NormalizeRays, FillsTheSquareOfSideTwoAroundTheHullsCentroid) {
   }
 }
 
+// Corners of neighbouring pixels are the same point, computed twice. Found as a map that missed
+// most of its cell: the edge between the two vertices pointed against the sense of the hull.
+TEST(NormalizeRays, DropsVerticesThatOnlyRoundingKeepsApart) {
+  Polygon hull = {{1.0264278658751245, 0.32344473053411038},
+                  {0.32021379554430679, 0.93438854973687269},
+                  {-0.39910574559104683, 1.0430837771361841},
+                  {-0.96301912254423061, 0.76857146650844377},
+                  {-0.91976379143025466, -0.10997147172416999},
+                  {-0.69832940490024598, -0.95691584011918862},
+                  {0.15291491880707414, -0.95691622286381561},
+                  {0.88317532752209527, -0.87007327429829484},
+                  {0.88317532752209527, -0.87007327429829473},
+                  {1.0369808774557694, 0.12809822007995164}};
+  hull.push_back(hull.front() + Eigen::Vector2d(1e-16, 2e-16));
+  const size_t num_vertices = hull.size();
+  ASSERT_TRUE(NormalizeRays(Eigen::Matrix3d::Identity(), &hull).has_value());
+  EXPECT_EQ(hull.size(), num_vertices - 2);
+  for (size_t i = 0; i < hull.size(); ++i) {
+    EXPECT_GT((hull[(i + 1) % hull.size()] - hull[i]).norm(), 1e-3) << i;
+  }
+}
+
 TEST(NormalizeRays, RefusesHullsWithoutArea) {
   for (Polygon hull :
        {Polygon{}, Polygon{{1, 2}}, Polygon{{0, 0}, {1, 1}}, Polygon{{0, 0}, {1, 0}, {2, 1e-11}}}) {
