@@ -76,24 +76,11 @@ std::optional<Eigen::Vector2d> TexelOf(const MappedFrame& frame, const Eigen::Ve
   return is_inside ? std::optional<Eigen::Vector2d>(texel) : std::nullopt;
 }
 
-// math.md (14). One and the same point in both maps, so that what its depth was rounded by does not
-// count. Nothing outside either map.
-std::optional<Eigen::Vector2d> PhaseDrift(const MappedFrame& before,
-                                          const MappedFrame& after,
-                                          const Eigen::Vector3d& position) {
-  const std::optional<Eigen::Vector2d> from = TexelOf(before, position);
-  const std::optional<Eigen::Vector2d> to = TexelOf(after, position);
-  if (!from.has_value() || !to.has_value()) return std::nullopt;
-  const Eigen::Vector2d change = *to - *from;
-  return Eigen::Vector2d(change.x() - std::round(change.x()), change.y() - std::round(change.y()));
-}
-
 // Surfaces of the earlier frame. Returns whether any is seen in the later, inside the maps or not.
-bool MeasurePoints(const MappedFrame& before,
-                   const MappedFrame& after,
+bool MeasurePoints(const Readback& readback,
                    const Sight& sight_after,
+                   const CrawlOf& of,
                    Crawl* crawl) {
-  const Readback& readback = before.readback;
   const AffineDepth affine_depth(readback.camera, readback.depth_kind);
   const Eigen::Matrix4d world_from_screen = readback.camera.WorldFromScreen();
   const double num_pixels = static_cast<double>(readback.width()) * readback.height();
@@ -109,11 +96,11 @@ bool MeasurePoints(const MappedFrame& before,
       const Eigen::Vector3d position = (world_from_screen * screen).hnormalized();
       if (!sight_after.Sees(position)) continue;
       any_seen = true;
-      const std::optional<Eigen::Vector2d> drift = PhaseDrift(before, after, position);
+      const std::optional<PointDrift> drift = of.drift_at(position);
       if (!drift.has_value()) continue;
       ++crawl->num_points;
-      sum += drift->squaredNorm();
-      if (drift->norm() > kPhaseTolerance) ++num_moved;
+      sum += drift->texels.squaredNorm();
+      if (drift->is_redrawn || drift->texels.norm() > kPhaseTolerance) ++num_moved;
     }
   }
   if (crawl->num_points > 0) {
@@ -125,23 +112,12 @@ bool MeasurePoints(const MappedFrame& before,
 }
 
 // Samples near the shadow's edge in the later frame.
-absl::Status MeasureEdge(const MappedFrame& before,
-                         const MappedFrame& after,
-                         const Light& light,
-                         const Sight& sight_before,
-                         const SampleOptions& options,
-                         Crawl* crawl) {
-  std::optional<Surfaces> own;
-  if (after.surfaces == nullptr) {
-    absl::StatusOr<Surfaces> found =
-        FindSurfaces(after.readback, uint32_t{1} << light.shadow_bit, options);
-    if (!found.ok()) return found.status();
-    own = *std::move(found);
-  }
-  const Surfaces& surfaces = own.has_value() ? *own : *after.surfaces;
-  const absl::StatusOr<PixelFootprints> footprints =
-      PixelFootprints::Create(after.readback, light, after.map_from_world, options);
-  if (!footprints.ok()) return footprints.status();
+void MeasureEdge(const Surfaces& surfaces,
+                 const Light& light,
+                 const Sight& sight_before,
+                 const CrawlOf& of,
+                 const SampleOptions& options,
+                 Crawl* crawl) {
   const Samples samples = SelectSamples(
       surfaces, light, options, Eigen::Matrix3d::Identity(), /*with_edge_normals=*/true);
   const size_t step = (samples.size() + kMaxPoints - 1) / kMaxPoints;
@@ -150,12 +126,12 @@ absl::Status MeasureEdge(const MappedFrame& before,
     const Eigen::Vector4d screen(samples.x[i], samples.y[i], samples.d[i], 1.0);
     const Eigen::Vector3d position = (surfaces.world_from_screen * screen).hnormalized();
     if (!sight_before.Sees(position)) continue;
-    const std::optional<Eigen::Vector2d> drift = PhaseDrift(before, after, position);
+    const std::optional<PointDrift> drift = of.drift_at(position);
     if (!drift.has_value()) continue;
-    const std::optional<PixelFootprint> pixel =
-        footprints->At(static_cast<int>(samples.x[i]), static_cast<int>(samples.y[i]));
-    if (!pixel.has_value() || pixel->is_behind) continue;
-    const Eigen::Vector2d on_screen = pixel->J_screen_map * *drift;
+    const std::optional<Eigen::Matrix2d> J_screen_map = of.J_screen_map_at(
+        static_cast<int>(samples.x[i]), static_cast<int>(samples.y[i]), position);
+    if (!J_screen_map.has_value()) continue;
+    const Eigen::Vector2d on_screen = *J_screen_map * drift->texels;
     const Eigen::Vector2d normal(samples.edge_normal_x[i], samples.edge_normal_y[i]);
     const double across = normal.isZero() ? on_screen.norm() : normal.dot(on_screen);
     ++crawl->num_edge_points;
@@ -164,10 +140,35 @@ absl::Status MeasureEdge(const MappedFrame& before,
   if (crawl->num_edge_points > 0) {
     crawl->edge_crawl_px = std::sqrt(sum / static_cast<double>(crawl->num_edge_points));
   }
-  return absl::OkStatus();
 }
 
 }  // namespace
+
+Eigen::Vector2d PhaseChange(const Eigen::Vector2d& texel_before,
+                            const Eigen::Vector2d& texel_after) {
+  const Eigen::Vector2d change = texel_after - texel_before;
+  return {change.x() - std::round(change.x()), change.y() - std::round(change.y())};
+}
+
+absl::StatusOr<Crawl> MeasureCrawl(const Readback& before,
+                                   const Readback& after,
+                                   const Surfaces* surfaces_after,
+                                   const Light& light,
+                                   const CrawlOf& of,
+                                   const SampleOptions& options) {
+  Crawl crawl;
+  const Sight sight_before(before, options), sight_after(after, options);
+  if (!MeasurePoints(before, sight_after, of, &crawl)) return crawl;
+  if (surfaces_after != nullptr) {
+    MeasureEdge(*surfaces_after, light, sight_before, of, options, &crawl);
+    return crawl;
+  }
+  const absl::StatusOr<Surfaces> found =
+      FindSurfaces(after, uint32_t{1} << light.shadow_bit, options);
+  if (!found.ok()) return found.status();
+  MeasureEdge(*found, light, sight_before, of, options, &crawl);
+  return crawl;
+}
 
 absl::StatusOr<Crawl> MeasureCrawl(const MappedFrame& before,
                                    const MappedFrame& after,
@@ -177,14 +178,24 @@ absl::StatusOr<Crawl> MeasureCrawl(const MappedFrame& before,
   if (absl::Status status = ValidateLight(light); !status.ok()) return status;
   if (absl::Status status = Validate(before, "before"); !status.ok()) return status;
   if (absl::Status status = Validate(after, "after"); !status.ok()) return status;
-  Crawl crawl;
-  const Sight sight_before(before.readback, options), sight_after(after.readback, options);
-  if (!MeasurePoints(before, after, sight_after, &crawl)) return crawl;
-  if (absl::Status status = MeasureEdge(before, after, light, sight_before, options, &crawl);
-      !status.ok()) {
-    return status;
-  }
-  return crawl;
+  const absl::StatusOr<PixelFootprints> footprints =
+      PixelFootprints::Create(after.readback, light, after.map_from_world, options);
+  if (!footprints.ok()) return footprints.status();
+  // One and the same point in both maps, so that what its depth was rounded by does not count.
+  const auto drift_at = [&](const Eigen::Vector3d& world) -> std::optional<PointDrift> {
+    const std::optional<Eigen::Vector2d> from = TexelOf(before, world);
+    const std::optional<Eigen::Vector2d> to = TexelOf(after, world);
+    if (!from.has_value() || !to.has_value()) return std::nullopt;
+    return PointDrift{PhaseChange(*from, *to)};
+  };
+  const auto J_screen_map_at =
+      [&](int x, int y, const Eigen::Vector3d&) -> std::optional<Eigen::Matrix2d> {
+    const std::optional<PixelFootprint> pixel = footprints->At(x, y);
+    if (!pixel.has_value() || pixel->is_behind) return std::nullopt;
+    return pixel->J_screen_map;
+  };
+  return MeasureCrawl(
+      before.readback, after.readback, after.surfaces, light, {drift_at, J_screen_map_at}, options);
 }
 
 }  // namespace lightfit

@@ -11,7 +11,9 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 
+#include "absl/functional/function_ref.h"
 #include "absl/status/statusor.h"
 #include "geometry/light.h"
 #include "geometry/map_size.h"
@@ -47,6 +49,20 @@ struct Crawl {
   double edge_crawl_px = 0.0;
 };
 
+// The same of whatever is drawn for a light, several maps say.
+struct PointDrift {
+  Eigen::Vector2d texels;   // the change of phase, math.md (14)
+  bool is_redrawn = false;  // has moved in any case: another map than before is asked
+};
+struct CrawlOf {
+  // Of a world point from the one frame to the other; nothing where either frame has it in no map.
+  absl::FunctionRef<std::optional<PointDrift>(const Eigen::Vector3d& world)> drift_at;
+  // What a texel is on the screen at a pixel of the later frame, in the map that the point there
+  // asks: pixels per texel; nothing where that is not known.
+  absl::FunctionRef<std::optional<Eigen::Matrix2d>(int x, int y, const Eigen::Vector3d& world)>
+      J_screen_map_at;
+};
+
 // Matrices in single precision round by less than this, texels; those in double by some 1e-12.
 inline constexpr double kPhaseTolerance = 0.01;
 
@@ -62,5 +78,17 @@ absl::StatusOr<Crawl> MeasureCrawl(const MappedFrame& before,
                                    const MappedFrame& after,
                                    const Light& light,
                                    const SampleOptions& options = {});
+
+// Of two read-backs that are valid. `surfaces_after` may be null.
+absl::StatusOr<Crawl> MeasureCrawl(const Readback& before,
+                                   const Readback& after,
+                                   const Surfaces* surfaces_after,
+                                   const Light& light,
+                                   const CrawlOf& of,
+                                   const SampleOptions& options);
+
+// The shorter way around in both coordinates.   math.md (14)
+Eigen::Vector2d PhaseChange(const Eigen::Vector2d& texel_before,
+                            const Eigen::Vector2d& texel_after);
 
 }  // namespace lightfit
