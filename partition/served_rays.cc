@@ -60,24 +60,6 @@ void ForEachLeaf(ScratchVector<Item>& items,
   ForEachLeaf(items, middle, end, most_in_leaf, visit);
 }
 
-// The extreme ones of rays that are close together.
-ScratchVector<Eigen::Vector3d> HullOf(const ScratchVector<Eigen::Vector3d>& rays,
-                                      const Eigen::Vector3d& middle) {
-  constexpr double kLeastCos = 0.1;  // beyond, the plane across the middle stretches too much
-  const Eigen::Matrix3d frame = FrameAlong(middle);
-  ScratchVector<Eigen::Vector2d> points;
-  for (const Eigen::Vector3d& ray : rays) {
-    const Eigen::Vector3d in_frame = frame * ray;
-    if (!(in_frame.z() > kLeastCos * ray.norm())) return rays;
-    points.push_back(in_frame.hnormalized());
-  }
-  ScratchVector<Eigen::Vector3d> hull;
-  for (const Eigen::Vector2d& point : ConvexHull(points)) {
-    hull.push_back(frame.transpose() * point.homogeneous());
-  }
-  return hull;
-}
-
 class Finder {
  public:
   Finder(const LightView& view, const FitOptions& fit, const ServedRaysOptions& options)
@@ -153,7 +135,7 @@ class Finder {
     bin.middle.normalize();
     bin.samples_end = static_cast<int>(result_.samples.size());
     bin.pixels_end = static_cast<int>(result_.pixels.size());
-    if (!rays.empty()) bin.hull = HullOf(rays, bin.middle);
+    if (!rays.empty()) bin.hull = ExtremeRays(rays, bin.middle);
     result_.bins.push_back(std::move(bin));
   }
 
@@ -224,6 +206,23 @@ class Finder {
 };
 
 }  // namespace
+
+ScratchVector<Eigen::Vector3d> ExtremeRays(const ScratchVector<Eigen::Vector3d>& rays,
+                                           const Eigen::Vector3d& middle) {
+  constexpr double kLeastCos = 0.1;  // beyond, the plane across the middle stretches too much
+  const Eigen::Matrix3d frame = FrameAlong(middle);
+  ScratchVector<Eigen::Vector2d> points;
+  for (const Eigen::Vector3d& ray : rays) {
+    const Eigen::Vector3d in_frame = frame * ray;
+    if (!(in_frame.z() > kLeastCos * ray.norm())) return rays;
+    points.push_back(in_frame.hnormalized());
+  }
+  ScratchVector<Eigen::Vector3d> hull;
+  for (const Eigen::Vector2d& point : ConvexHull(points)) {
+    hull.push_back(frame.transpose() * point.homogeneous());
+  }
+  return hull;
+}
 
 absl::StatusOr<ServedRays> FindServedRays(const LightView& view,
                                           const FitOptions& fit,

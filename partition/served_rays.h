@@ -70,6 +70,11 @@ struct ServedRaysOptions {
   int max_bins = 1024;
 };
 
+// The extreme ones of rays that lie close together: all others are between them. `middle` is among
+// them or near.
+ScratchVector<Eigen::Vector3d> ExtremeRays(const ScratchVector<Eigen::Vector3d>& rays,
+                                           const Eigen::Vector3d& middle);
+
 // Of `fit` count the cover and the metric; the view was made with it. CancelledError once a
 // StopScope says so.
 absl::StatusOr<ServedRays> FindServedRays(const LightView& view,

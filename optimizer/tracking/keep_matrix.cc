@@ -40,17 +40,15 @@ Landing LandingOf(const ScratchVector<Eigen::Vector4d>& corners,
   return landing;
 }
 
-// The whole number of texels to move an interval by, so that it lies in 0 ... size, in its middle
-// where there is a choice; nothing where it does not fit.
-std::optional<double> WholeTexelShift(double low, double high, double size) {
-  const double middle = 0.5 * size - 0.5 * (low + high);
+}  // namespace
+
+std::optional<double> WholeTexelShift(double low, double high, double first, double last) {
+  const double middle = 0.5 * (first + last) - 0.5 * (low + high);
   for (const double shift : {std::round(middle), std::floor(middle), std::ceil(middle)}) {
-    if (low + shift >= 0.0 && high + shift <= size) return shift;
+    if (low + shift >= first && high + shift <= last) return shift;
   }
   return std::nullopt;
 }
-
-}  // namespace
 
 ScratchVector<Eigen::Vector4d> CornersOfCover(const RayCover& cover, const Light& light) {
   const Eigen::Matrix3d ray_from_normalized = cover.normalized_from_ray.inverse();
@@ -83,9 +81,9 @@ Kept KeepMatrix(const TrackedState& state, const ScratchVector<Eigen::Vector4d>&
   kept.is_valid = map.contains(landing.texels);
   if (kept.is_valid) return kept;
   const std::optional<double> u =
-      WholeTexelShift(landing.texels.min().x(), landing.texels.max().x(), state.map.width);
+      WholeTexelShift(landing.texels.min().x(), landing.texels.max().x(), 0.0, state.map.width);
   const std::optional<double> v =
-      WholeTexelShift(landing.texels.min().y(), landing.texels.max().y(), state.map.height);
+      WholeTexelShift(landing.texels.min().y(), landing.texels.max().y(), 0.0, state.map.height);
   if (!u.has_value() || !v.has_value()) return kept;
   kept.map_from_world.row(0) += *u * kept.map_from_world.row(3);
   kept.map_from_world.row(1) += *v * kept.map_from_world.row(3);

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 
 #include "absl/status/statusor.h"
 #include "base/scratch.h"
@@ -51,6 +52,10 @@ struct Kept {
 // at the nearest and the farthest depth, as homogeneous world points. u, v, w and z of a map are
 // extreme over the covered receivers at some of these.
 ScratchVector<Eigen::Vector4d> CornersOfCover(const RayCover& cover, const Light& light);
+
+// The whole number of texels to move an interval by, so that it lies in `first` ... `last`, in
+// their middle where there is a choice; nothing where it does not fit.
+std::optional<double> WholeTexelShift(double low, double high, double first, double last);
 
 // The matrix itself, moved by whole texels if it must and can.
 Kept KeepMatrix(const TrackedState& state, const ScratchVector<Eigen::Vector4d>& corners);

@@ -1,0 +1,79 @@
+// partition/keep_plan.h
+//
+// What can be kept of the plan of the frame before, map by map.
+// In:   the maps as they were; one frame's LightView and ServedRays.
+// Out:  maps that hold all that must be held, at little cost: kept, moved by whole texels, or
+// fitted
+//       anew.   docs/mathematics.md 11
+//
+// Of all ways to hold what must be held the one is taken that costs least (partition/plan_costs.h).
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "base/scratch.h"
+#include "geometry/map_size.h"
+#include "optimizer/fit_options.h"
+#include "optimizer/light_view.h"
+#include "partition/held_bins.h"
+#include "partition/kept_map.h"
+#include "partition/pixel_rays.h"
+#include "partition/plan_costs.h"
+#include "partition/plan_options.h"
+#include "partition/served_rays.h"
+
+namespace lightfit {
+
+// In one frame. Of no use once a StopScope says so.
+class PlanKeeper {
+ public:
+  // All of it but `before` must outlive the keeper. `before`: the maps of the frame before.
+  // `roomy`: how maps are fitted anew.
+  PlanKeeper(const LightView& view,
+             const ServedRays& rays,
+             const KeptMaps& before,
+             const PlanOptions& options,
+             const FitOptions& roomy);
+
+  HeldBins HeldBy(const KeptMaps& maps) const;
+
+  // Moves maps and fits them anew, at the least cost, so that together they hold all. Whether they
+  // do.
+  bool HoldAll(KeptMaps* maps) const;
+
+  // The energy if every map were fitted anew to what asks it, as tightly as may be, where that is
+  // better than what is there.
+  double TightEnergyOf(const KeptMaps& maps) const;
+
+  // Fits maps anew, each to what asks it, so that the energy is below `most` at the least price.
+  // The price; infinite, and the maps as they were, where there is no way.
+  double LowerEnergy(double most, KeptMaps* maps) const;
+
+  // Fits every map anew to what asks it, with room.
+  void MakeRoomy(KeptMaps* maps) const;
+
+  const PlanCosts& costs() const { return costs_; }
+
+ private:
+  // Beginning from a map, one of the same size that holds these bins; nothing where there is none.
+  std::optional<KeptMap> FittedTo(const HeldBins& held,
+                                  const ScratchVector<int>& bins,
+                                  const KeptMap& start,
+                                  MapSize size,
+                                  const FitOptions& fit,
+                                  TrackerAction action) const;
+
+  // Lets one map hold bins that no map holds. Whether one can.
+  bool HoldByOne(const ScratchVector<int>& outside, const HeldBins& held, KeptMaps* maps) const;
+  bool HoldStepByStep(bool by_groups, KeptMaps* maps) const;
+
+  const LightView& view_;
+  const ServedRays& rays_;
+  const PlanOptions& options_;
+  const FitOptions& roomy_;
+  PixelRays pixels_;
+  PlanCosts costs_;
+};
+
+}  // namespace lightfit

@@ -1,0 +1,68 @@
+#include "partition/plan_tracker.h"
+
+#include <algorithm>
+
+#include "absl/strings/str_format.h"
+#include "partition/kept_map.h"
+#include "partition/track_plan.h"
+
+namespace lightfit {
+
+namespace {
+
+bool IsSameLight(const Light& a, const Light& b) {
+  return a.kind == b.kind && a.position == b.position && a.direction == b.direction;
+}
+
+}  // namespace
+
+PlanTrackerOptions PlanTrackerOptions::ForStability(double stability) {
+  PlanTrackerOptions options;
+  options.tolerance = stability;
+  options.update_every_frames = stability > 0.0 ? 3 : 1;
+  options.cover_margin_percent = 20.0 * stability * stability;
+  return options;
+}
+
+absl::Status ValidatePlanTrackerOptions(const PlanTrackerOptions& options) {
+  if (absl::Status status = ValidatePlanOptions(options.plan); !status.ok()) return status;
+  if (!(options.tolerance >= 0.0)) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("options.tolerance = %g, want at least 0", options.tolerance));
+  }
+  if (options.update_every_frames < 1) {
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "options.update_every_frames = %d, want at least 1", options.update_every_frames));
+  }
+  if (!(options.cover_margin_percent >= 0.0 && options.cover_margin_percent <= 1000.0)) {
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "options.cover_margin_percent = %g, want 0 ... 1000", options.cover_margin_percent));
+  }
+  return absl::OkStatus();
+}
+
+int TrackedPlan::NumRedrawn() const {
+  return static_cast<int>(std::count_if(actions.begin(), actions.end(), IsRedrawn));
+}
+
+void PlanTracker::set_light(const Light& light) {
+  if (!IsSameLight(light, state_.light)) state_.maps.clear();
+  state_.light = light;
+}
+
+absl::StatusOr<TrackedPlan> PlanTracker::Update(const Surfaces& surfaces) {
+  if (absl::Status status = ValidatePlanTrackerOptions(options_); !status.ok()) return status;
+  if (absl::Status status = ValidateLight(state_.light); !status.ok()) return status;
+  absl::StatusOr<TrackedPlan> tracked = TrackPlan(surfaces, state_, options_);
+  if (!tracked.ok()) return tracked;
+  state_.border = tracked->plan.border;
+  state_.frames_since_update = tracked->is_updated ? 0 : state_.frames_since_update + 1;
+  state_.maps.resize(tracked->plan.maps.size());
+  for (size_t k = 0; k < state_.maps.size(); ++k) {
+    const LightMatrix& map = tracked->plan.maps[k];
+    state_.maps[k] = {map.map_from_world, map.map, tracked->frames_kept[k]};
+  }
+  return tracked;
+}
+
+}  // namespace lightfit
