@@ -11,6 +11,7 @@
 #include "geometry/light_map.h"
 #include "optimizer/fit_matrix.h"
 #include "partition/divided_maps.h"
+#include "partition/map_depths.h"
 
 namespace lightfit {
 
@@ -74,6 +75,17 @@ absl::StatusOr<LightPlan> FinishPlan(const LightView& view,
     if (!matrix.ok()) return matrix.status();
     plan.energy += matrix->figures.energy;
     plan.maps.push_back(*std::move(matrix));
+  }
+  ScratchVector<Eigen::Matrix4d> matrices;
+  for (const LightMatrix& map : plan.maps) matrices.push_back(map.map_from_world);
+  const ScratchVector<MapDepths> depths = FindMapDepths(view, options.fit, ray_maps, matrices);
+  for (size_t k = 0; k < maps.size(); ++k) {
+    if (depths[k].Fits()) continue;
+    LayDepthRow(*view.light,
+                depths[k],
+                fitter.rays().distance,
+                /*room=*/0.0,
+                &plan.maps[k].map_from_world);
   }
   if (absl::Status status = CheckStop(*view.light); !status.ok()) return status;
   if (plan.maps.empty()) {

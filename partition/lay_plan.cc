@@ -9,6 +9,7 @@
 #include "optimizer/figures/figures.h"
 #include "optimizer/fit_matrix.h"
 #include "partition/finish_plan.h"
+#include "partition/map_depths.h"
 
 namespace lightfit {
 
@@ -32,6 +33,23 @@ LightMatrix UnusedMap(const LightView& view, const KeptMap& map) {
   return matrix;
 }
 
+// A map's matrix and figures, with a depth row that has what `summary` covers.
+absl::StatusOr<LightMatrix> LayMap(const LightView& view,
+                                   const KeptMap& map,
+                                   const Summary& summary,
+                                   const Samples& samples,
+                                   const FitOptions& fit) {
+  const absl::StatusOr<Eigen::Matrix3d> map_from_ray = MapFromRay(map.map_from_world, *view.light);
+  if (!map_from_ray.ok()) return map_from_ray.status();
+  const SearchInputs inputs = {
+      *view.light, summary, samples.size() > 0 ? &samples : nullptr, view.surfaces};
+  absl::StatusOr<LightMatrix> matrix = MatrixOfMap(
+      inputs, *map_from_ray * summary.cover.normalized_from_ray.inverse(), map.size, fit);
+  if (!matrix.ok()) return matrix.status();
+  for (const int row : {0, 1, 3}) matrix->map_from_world.row(row) = map.map_from_world.row(row);
+  return matrix;
+}
+
 DepthRange Widened(DepthRange depth, const Light& light, double room) {
   if (light.kind == Light::Kind::kPoint) {
     return {depth.near / (1.0 + room), depth.far * (1.0 + room)};
@@ -49,29 +67,6 @@ bool DepthFits(const Eigen::Matrix4d& map_from_world,
   });
 }
 
-// One map's matrix. `summary` says what it covers.
-absl::StatusOr<LightMatrix> LayMap(const LightView& view,
-                                   const KeptMap& map,
-                                   Summary summary,
-                                   const Samples& samples,
-                                   const FitOptions& fit,
-                                   double depth_room) {
-  const bool keeps_depth =
-      !IsRedrawn(map.action) &&
-      DepthFits(map.map_from_world, CornersOfCover(summary.cover, *view.light));
-  summary.cover.depth = Widened(summary.cover.depth, *view.light, depth_room);
-  const absl::StatusOr<Eigen::Matrix3d> map_from_ray = MapFromRay(map.map_from_world, *view.light);
-  if (!map_from_ray.ok()) return map_from_ray.status();
-  const SearchInputs inputs = {
-      *view.light, summary, samples.size() > 0 ? &samples : nullptr, view.surfaces};
-  absl::StatusOr<LightMatrix> matrix = MatrixOfMap(
-      inputs, *map_from_ray * summary.cover.normalized_from_ray.inverse(), map.size, fit);
-  if (!matrix.ok()) return matrix.status();
-  for (const int row : {0, 1, 3}) matrix->map_from_world.row(row) = map.map_from_world.row(row);
-  if (keeps_depth) matrix->map_from_world.row(2) = map.map_from_world.row(2);
-  return matrix;
-}
-
 }  // namespace
 
 absl::StatusOr<LightPlan> LayPlan(const LightView& view,
@@ -80,7 +75,11 @@ absl::StatusOr<LightPlan> LayPlan(const LightView& view,
                                   const FitOptions& fit,
                                   double depth_room) {
   LightPlan plan = EmptyPlan(view);
-  ScratchVector<Samples> samples = SamplesByMap(view, RayMapsOf(maps));
+  const ScratchVector<RayMap> ray_maps = RayMapsOf(maps);
+  ScratchVector<Eigen::Matrix4d> matrices;
+  for (const KeptMap& map : maps) matrices.push_back(map.map_from_world);
+  const ScratchVector<MapDepths> depths = FindMapDepths(view, fit, ray_maps, matrices);
+  ScratchVector<Samples> samples = SamplesByMap(view, ray_maps);
   for (size_t k = 0; k < maps.size(); ++k) {
     const int index = static_cast<int>(k);
     std::optional<CoverOfCell> cover = FindCoverOfCell(held.rays, held.BinsOf(index), *view.light);
@@ -90,16 +89,22 @@ absl::StatusOr<LightPlan> LayPlan(const LightView& view,
     if (cover.has_value()) {
       const CellInputs inputs = InputsOfCell(view, held.rays, *cover, std::move(samples[k]), fit);
       absl::StatusOr<LightMatrix> matrix =
-          LayMap(view, maps[k], inputs.summary, inputs.samples, fit, depth_room);
+          LayMap(view, maps[k], inputs.summary, inputs.samples, fit);
       if (!matrix.ok()) return matrix.status();
       plan.maps.push_back(*std::move(matrix));
     } else {
-      // It holds nothing that has area, and nothing that depth could spoil.
+      // It holds nothing that has area.
       plan.maps.push_back(UnusedMap(view, maps[k]));
       plan.maps.back().figures =
           MeasureFigures(samples[k], maps[k].rays.map_from_ray, fit.metric, fit.along_edge_share);
     }
-    plan.energy += plan.maps.back().figures.energy;
+    LightMatrix& laid = plan.maps.back();
+    if (!IsRedrawn(maps[k].action) && depths[k].Fits()) {
+      laid.map_from_world.row(2) = maps[k].map_from_world.row(2);
+    } else if (depths[k].IsAsked()) {
+      LayDepthRow(*view.light, depths[k], held.rays.distance, depth_room, &laid.map_from_world);
+    }
+    plan.energy += laid.figures.energy;
   }
   return plan;
 }
@@ -114,9 +119,13 @@ absl::StatusOr<LightPlan> LayPlanOfOne(const LightView& view,
   summary.facing = view.facing();
   summary.counts = view.samples.counts;
   summary.cover = *view.cover;
-  absl::StatusOr<LightMatrix> matrix =
-      LayMap(view, map, std::move(summary), view.samples, fit, depth_room);
+  const bool keeps_depth =
+      !IsRedrawn(map.action) &&
+      DepthFits(map.map_from_world, CornersOfCover(summary.cover, *view.light));
+  summary.cover.depth = Widened(summary.cover.depth, *view.light, depth_room);
+  absl::StatusOr<LightMatrix> matrix = LayMap(view, map, summary, view.samples, fit);
   if (!matrix.ok()) return matrix.status();
+  if (keeps_depth) matrix->map_from_world.row(2) = map.map_from_world.row(2);
   LightPlan plan = EmptyPlan(view);
   plan.energy = matrix->figures.energy;
   plan.maps.push_back(*std::move(matrix));
