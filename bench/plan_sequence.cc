@@ -1,6 +1,7 @@
 // bench/plan_sequence.cc : what stable plans of several maps cost over a shot, and save in crawl.
 //
-// In:   a folder of read-backs (by default shot_walk beside the repository) with scene.json.
+// In:   a folder of read-backs (by default shot_walk beside the repository) with scene.json; or
+//       --boxes N: walks through random scenes.
 // Out:  per light and over all: energy over that of the plan fitted to each frame, and over that of
 //       one map fitted to each; maps redrawn and plans replaced; crawl; pixels that no map holds
 //       and the border answers wrongly; milliseconds per frame. Of one map and of plans, fitted to
@@ -11,7 +12,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -32,7 +32,6 @@
 namespace lightfit {
 namespace {
 
-int g_inv=0,g_rep=0;
 struct Arguments {
   std::string folder = DefaultReadbackFolder() + "/shot_walk";
   int frames = 1000;
@@ -123,9 +122,6 @@ class TrackedMaps : public Row {
   absl::StatusOr<Made> Make(const Frame& frame, const Light&) override {
     const absl::StatusOr<TrackedPlan> tracked = tracker_.Update(*frame.surfaces);
     if (!tracked.ok()) return tracked.status();
-    g_inv=g_rep=0; for(auto a: tracked->actions){ g_inv+=a==TrackerAction::kInvalid; g_rep+=a==TrackerAction::kReplaced; }
-    static int counts[2][8]; for (auto a : tracked->actions) ++counts[tracked->is_new][(int)a];
-    if(getenv("COUNT")) { printf("COUNT"); for(int i=0;i<2;++i){ printf(i?" | new:":" each:"); for(int j=0;j<6;++j) printf(" %s %d", TrackerActionName((TrackerAction)j), counts[i][j]);} printf("\n"); }
     return Made{
         PlanOf(tracked->plan), tracked->plan.energy, tracked->NumRedrawn(), tracked->is_new};
   }
@@ -183,7 +179,7 @@ Totals Measure(const std::vector<Frame>& frames,
     totals.num_maps += static_cast<int>(made->plan.maps.size());
     totals.num_redrawn += made->num_redrawn;
     totals.num_new += made->is_new ? 1 : 0;
-    totals.num_outside += NumOutside(frame, light, made->plan); if(NumOutside(frame, light, made->plan)) printf("OUTSIDE %d\n",NumOutside(frame, light, made->plan));
+    totals.num_outside += NumOutside(frame, light, made->plan);
     double edge = 0.0;
     if (before.has_value()) {
       const absl::StatusOr<Crawl> crawl =
@@ -195,7 +191,7 @@ Totals Measure(const std::vector<Frame>& frames,
       if (crawl.ok()) edge = crawl->edge_crawl_px;
     }
     if (per_frame) {
-      std::printf("  %s %s: %d of %zu redrawn%s, energy %.3f, edge crawl %.4f, %.1f ms inv %d rep %d\n",
+      std::printf("  %s %s: %d of %zu redrawn%s, energy %.3f, edge crawl %.4f, %.1f ms\n",
                   light.name.c_str(),
                   frame.input.name.c_str(),
                   made->num_redrawn,
@@ -203,7 +199,7 @@ Totals Measure(const std::vector<Frame>& frames,
                   made->is_new ? " (new)" : "",
                   made->energy / (is_one ? own[i].one_map : own[i].plan),
                   edge,
-                  time.count(),g_inv,g_rep);
+                  time.count());
     }
     before = *std::move(made);
     frame_before = &frame;
