@@ -16,10 +16,6 @@ constexpr float kCosineShare = 0.46f;
 constexpr float kMarkOpacity = 0.92f;
 constexpr float kLeastMarkOpacity = 0.55f;  // of a square in which one pixel is wrong
 
-bool IsJudged(Lighting lighting) {
-  return lighting == Lighting::kLit || lighting == Lighting::kShadowed;
-}
-
 Rgb Grey(const SurfacePoint& pixel, const Eigen::Vector3d& eye, const Light& light, bool is_lit) {
   const bool is_point = light.kind == Light::Kind::kPoint;
   const Eigen::Vector3d to_light = is_point ? Eigen::Vector3d(light.position - pixel.position)
