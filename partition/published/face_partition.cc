@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -14,6 +13,7 @@
 #include "methods/view_frame.h"
 #include "partition/published/equal_maps.h"
 #include "partition/published/face_cells.h"
+#include "partition/published/least_error_warp.h"
 
 namespace lightfit {
 
@@ -68,54 +68,17 @@ std::optional<ViewFrame> AlongFace(const LightBody& body,
   return frame;
 }
 
-// 1/n' of the least M_v, the largest error along b, which at a corner is in proportion to
-// X_3 (1 + b/n')^2 / (z (1 + L/n')). That is convex in 1/n' and more than M_v of no warp from
-// `high` on.
-double LeastErrorWarp(const LightBody& body, const ViewFrame& frame, const Camera& camera) {
-  struct Corner {
-    double b, z;  // z per unit of light depth
-  };
-  std::vector<Corner> corners;
-  double least_z = std::numeric_limits<double>::infinity(), end_b = 0.0, end_z = least_z;
+// Pixels' widths are those that texels of the light's plane meet.
+std::vector<WarpCorner> CornersAlong(const LightBody& body,
+                                     const ViewFrame& frame,
+                                     const Camera& camera) {
+  std::vector<WarpCorner> corners;
   for (size_t i = 0; i < body.points.size(); ++i) {
     const double light_depth = body.rays[i].z();
-    const Corner corner = {frame.along.dot(body.rays[i]) / light_depth,
-                           CameraDepth(camera, body.points[i]) / light_depth};
-    corners.push_back(corner);
-    least_z = std::min(least_z, corner.z);
-    if (corner.b > end_b) {
-      end_b = corner.b;
-      end_z = corner.z;
-    }
+    corners.push_back({frame.along.dot(body.rays[i]) / light_depth,
+                       CameraDepth(camera, body.points[i]) / light_depth});
   }
-  const auto error_at = [&](double one_over_n) {
-    double largest = 0.0;
-    for (const Corner& corner : corners) {
-      const double w = 1.0 + corner.b * one_over_n;
-      largest = std::max(largest, w * w / corner.z);
-    }
-    return largest / (1.0 + frame.length * one_over_n);
-  };
-  // Golden section.
-  constexpr int kSteps = 80;
-  const double share = 0.5 * (std::sqrt(5.0) - 1.0);
-  double low = 0.0, high = std::max(end_z / least_z - 1.0, 0.0) / frame.length;
-  double left = high - share * (high - low), right = low + share * (high - low);
-  double left_error = error_at(left), right_error = error_at(right);
-  for (int i = 0; i < kSteps; ++i) {
-    if (left_error <= right_error) {
-      high = std::exchange(right, left);
-      right_error = left_error;
-      left = high - share * (high - low);
-      left_error = error_at(left);
-    } else {
-      low = std::exchange(left, right);
-      left_error = right_error;
-      right = low + share * (high - low);
-      right_error = error_at(right);
-    }
-  }
-  return 0.5 * (low + high);
+  return corners;
 }
 
 absl::StatusOr<MethodMap> MapOfCell(const LightBody& body,
@@ -127,8 +90,8 @@ absl::StatusOr<MethodMap> MapOfCell(const LightBody& body,
   if (!frame.has_value()) {
     return FitBody(body, Eigen::Matrix3d::Identity(), RectangleTurn::kMinArea);
   }
-  return FitBody(
-      body, frame->Warped(LeastErrorWarp(body, *frame, camera)), RectangleTurn::kAlongRows);
+  const double one_over_n = LeastErrorWarp(CornersAlong(body, *frame, camera));
+  return FitBody(body, frame->Warped(one_over_n), RectangleTurn::kAlongRows);
 }
 
 }  // namespace

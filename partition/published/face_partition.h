@@ -4,16 +4,13 @@
 // In:      MethodInput, whose map is the budget: all maps together have at most its texels; how
 //          many parts each side face has, and whether they are warped.
 // Out:     Plan: a map for each cell of face_cells.h.
-// Symbols: e0, e1 the view's edges beside a face, e0', e1' as the light sees them; b along their
-//          bisector; z0, z1 camera depths where the cell begins and ends along b, L its length.
+// Symbols: e0, e1 the view's edges beside a face, e0', e1' as the light sees them from the eye.
 //
 // Lloyd et al. 2006, 5.1: a light along the view sees a square, on which no warp helps; its side
 // faces are trapezoids, on which one does ("FP+W", with several parts "FP+ZP+W"). A face's warp has
-// its axis along the bisector of e0' and e1', and the parameter of light-space perspective maps,
-//
-//     n' = L / (sqrt(z1/z0) - 1),
-//
-// which is (z0 + sqrt(z0 z1)) over the slope of depth along b. docs/published_plans.md
+// its axis along the bisector of e0' and e1', both of unit length: with their sum as it stands, a
+// face that is nearly edge-on would take hundreds of times the texels. It is as strong as makes the
+// largest error along the axis the least (least_error_warp.h), as for light-space perspective maps.
 //
 // Edge cases: an orthographic view, whose pixels do not shrink with depth, and a view of which
 // nothing is seen have one focused map. A cell without receivers in view has no map.
