@@ -121,6 +121,15 @@ absl::Status ValidateMethodInput(const MethodInput& input) {
     return absl::InvalidArgumentError(
         "plane: not finite, or its normal is not of length 1; want a unit normal, world");
   }
+  for (const Eigen::Vector4d& cut : input.cuts) {
+    if (cut.allFinite()) continue;
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "cuts: (%g, %g, %g, %g) is not finite, want the coefficients of a plane, world",
+        cut.x(),
+        cut.y(),
+        cut.z(),
+        cut.w()));
+  }
   return absl::OkStatus();
 }
 
@@ -132,7 +141,7 @@ absl::StatusOr<LightBody> WholeBody(const MethodInput& input) {
 
 absl::StatusOr<LightBody> BodyInView(const MethodInput& input) {
   if (absl::Status status = ValidateMethodInput(input); !status.ok()) return status;
-  std::vector<Eigen::Vector3d> points = ViewBody(input.camera, input.receivers);
+  std::vector<Eigen::Vector3d> points = ViewBody(input.camera, input.receivers, input.cuts);
   if (!points.empty()) {
     absl::StatusOr<LightBody> body = SeenFromLight(input, std::move(points));
     if (!body.ok() || HasArea(HullOfBody(*body, Eigen::Matrix3d::Identity()))) return body;

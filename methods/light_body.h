@@ -36,8 +36,8 @@ struct LightBody {
 // Checks light, camera, clip planes, box and map size; the message names the field.
 absl::Status ValidateMethodInput(const MethodInput& input);
 
-// The whole box; or what the camera sees of it. InvalidArgument as above; FailedPrecondition when
-// the body surrounds a point light, which has no single map.
+// The whole box; or what the camera sees of it, within the input's cuts. InvalidArgument as above;
+// FailedPrecondition when the body surrounds a point light, which has no single map.
 absl::StatusOr<LightBody> WholeBody(const MethodInput& input);
 absl::StatusOr<LightBody> BodyInView(const MethodInput& input);
 

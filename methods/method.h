@@ -34,6 +34,10 @@ struct MethodInput {
   // PlaneOptimalMap: the plane that gets one texel per pixel (methods/dominant_plane.h finds one).
   // Absent: the lit inner face of `receivers` that the camera sees most of.
   std::optional<Eigen::Hyperplane<double, 3>> plane;
+
+  // What is in view counts only where cut.(x, 1) >= 0 for every one of them, world: a part of the
+  // view, one map of several. kStandard has the whole box all the same.
+  std::vector<Eigen::Vector4d> cuts = {};
 };
 
 struct MethodMap {

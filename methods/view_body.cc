@@ -25,11 +25,12 @@ std::array<Eigen::Vector4d, 6> BoxPlanes(const Eigen::AlignedBox3d& box) {
 
 void AppendFaces(const std::array<Eigen::Vector3d, 8>& corners,
                  absl::Span<const Eigen::Vector4d> planes,
+                 absl::Span<const Eigen::Vector4d> cuts,
                  std::vector<Eigen::Vector3d>* body) {
   for (const auto& face : kFaces) {
     std::vector<Eigen::Vector3d> polygon;
     for (const int corner : face) polygon.push_back(corners[corner]);
-    polygon = ClipPolygon(std::move(polygon), planes);
+    polygon = ClipPolygon(ClipPolygon(std::move(polygon), planes), cuts);
     body->insert(body->end(), polygon.begin(), polygon.end());
   }
 }
@@ -96,10 +97,12 @@ std::vector<Eigen::Vector3d> ClipPolygon(std::vector<Eigen::Vector3d> polygon,
   return polygon;
 }
 
-std::vector<Eigen::Vector3d> ViewBody(const Camera& camera, const Eigen::AlignedBox3d& box) {
+std::vector<Eigen::Vector3d> ViewBody(const Camera& camera,
+                                      const Eigen::AlignedBox3d& box,
+                                      absl::Span<const Eigen::Vector4d> cuts) {
   std::vector<Eigen::Vector3d> body;
-  AppendFaces(FrustumCorners(camera), BoxPlanes(box), &body);
-  AppendFaces(BoxCorners(box), FrustumPlanes(camera), &body);
+  AppendFaces(FrustumCorners(camera), BoxPlanes(box), cuts, &body);
+  AppendFaces(BoxCorners(box), FrustumPlanes(camera), cuts, &body);
   return body;
 }
 

@@ -2,7 +2,8 @@
 //
 // What a shadow map must cover: the part of the receivers' box that the camera can see.
 // In:   a camera with clip planes, 0 < near < far; a box, world.
-// Out:  corners of the convex body  view frustum ∩ box, world; the view's own directions.
+// Out:  corners of the convex body  view frustum ∩ box, or of a part of it, world; the view's own
+//       directions.
 #pragma once
 
 #include <Eigen/Core>
@@ -30,8 +31,11 @@ std::vector<Eigen::Vector3d> ClipPolygon(std::vector<Eigen::Vector3d> polygon,
 
 // All corners of the intersection, some of them more than once; empty when the camera sees nothing
 // of the box. Each corner lies on a face of the frustum that is inside the box, or the other way
-// around, so the faces of both are clipped by the other's planes.
-std::vector<Eigen::Vector3d> ViewBody(const Camera& camera, const Eigen::AlignedBox3d& box);
+// around, so the faces of both are clipped by the other's planes. `cuts` are more planes, inside as
+// above: those of a plane's own face lie on edges of the body, and so on other faces too.
+std::vector<Eigen::Vector3d> ViewBody(const Camera& camera,
+                                      const Eigen::AlignedBox3d& box,
+                                      absl::Span<const Eigen::Vector4d> cuts = {});
 
 Eigen::Vector3d EyePosition(const Camera& camera);
 Eigen::Vector3d ViewDirection(const Camera& camera);  // unit, along camera z

@@ -134,10 +134,43 @@ SampleSums CellFitter::SumsOf(const RayBin& bin, const MapExtents& extents, doub
   return sums;
 }
 
+bool CellFitter::HasSamples(Bins bins) const {
+  return std::any_of(bins.begin(), bins.end(), [this](int bin) {
+    return rays_.bins[bin].samples_end > rays_.bins[bin].samples_begin;
+  });
+}
+
+// Without samples no map has more energy than another: the focused one.
+std::optional<CellMap> CellFitter::MapWithoutSamples(const CellCover& cover) const {
+  CellMap map;
+  SetAspect(1.0, &map);
+  const std::optional<Eigen::Matrix3d> map_from_ray = FocusedMap(cover, WholeSize(map), 0.0);
+  if (!map_from_ray.has_value()) return std::nullopt;
+  map.map_from_ray = *map_from_ray;
+  return map;
+}
+
+std::optional<Eigen::Matrix3d> CellFitter::FocusedMap(const CellCover& cover,
+                                                      MapSize size,
+                                                      double guard_texels) const {
+  AffineProblem problem;
+  problem.map = size;
+  problem.affine = Affine::kMinAreaRectangle;
+  problem.normalized_from_ray = cover.normalized_from_ray;
+  problem.margin_percent = options_.margin_percent;
+  problem.margin_texels = guard_texels;
+  const absl::StatusOr<AffineFit> fit =
+      FitAffine(problem, cover.hull, Eigen::Matrix3d::Identity(), Eigen::Vector3d::UnitZ());
+  if (!fit.ok()) return std::nullopt;
+  return fit->map_from_ray * cover.normalized_from_ray;
+}
+
 std::optional<CellMap> CellFitter::Rounds(Bins bins, const CellMap* start, int num_rounds) const {
   const std::optional<CellCover> cover = CoverBins(rays_, bins, light_);
   if (!cover.has_value()) return std::nullopt;
   const Eigen::Matrix3d ray_from_normalized = cover->normalized_from_ray.inverse();
+
+  if (!HasSamples(bins)) return MapWithoutSamples(*cover);
 
   // Whether there is a map yet whose footprints weigh the samples.
   CellMap current;
@@ -229,6 +262,7 @@ std::optional<Eigen::Matrix3d> CellFitter::MapOfSize(Bins bins,
                                                      double guard_texels) const {
   const std::optional<CellCover> cover = CoverBins(rays_, bins, light_);
   if (!cover.has_value()) return std::nullopt;
+  if (!HasSamples(bins)) return FocusedMap(*cover, size, guard_texels);
   const MapExtents extents(map.map_from_ray);
   const double floor = FloorOf(bins, extents);
   Eigen::Matrix<double, 6, 6> sum = Eigen::Matrix<double, 6, 6>::Zero();

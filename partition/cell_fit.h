@@ -102,6 +102,11 @@ class CellFitter {
   const SearchOptions& options() const { return options_; }
 
  private:
+  bool HasSamples(Bins bins) const;
+  std::optional<CellMap> MapWithoutSamples(const CellCover& cover) const;
+  std::optional<Eigen::Matrix3d> FocusedMap(const CellCover& cover,
+                                            MapSize size,
+                                            double guard_texels) const;
   std::optional<CellMap> Rounds(Bins bins, const CellMap* start, int num_rounds) const;
 
   const ServedRays& rays_;

@@ -23,6 +23,9 @@ namespace lightfit {
 
 namespace {
 
+// How much less must be foretold for a plan of more maps to be taken: docs/plans.md.
+constexpr double kMoreMapsBelow = 0.95;
+
 // A square map of at most so many texels.
 MapSize SquareOf(int64_t texels) {
   const int side = static_cast<int>(std::sqrt(static_cast<double>(texels)));
@@ -182,9 +185,12 @@ class Choice {
         ForetellWrongShare(surfaces_.readback, light_, maps, options_.fit.samples, plan.border);
     if (!share.ok()) return share.status();
     plan.wrong_share = *share;
-    const bool is_to_dark =
-        best_.has_value() && plan.border == Border::kDark && best_->border == Border::kLit;
-    const double below = is_to_dark ? kDarkBorderBelow : 1.0;
+    double below = 1.0;
+    if (best_.has_value()) {
+      const bool is_to_dark = plan.border == Border::kDark && best_->border == Border::kLit;
+      const bool is_to_more = plan.maps.size() > best_->maps.size();
+      below = is_to_dark ? kDarkBorderBelow : is_to_more ? kMoreMapsBelow : 1.0;
+    }
     if (!best_.has_value() || *share < below * *best_->wrong_share) best_ = std::move(plan);
     return absl::OkStatus();
   }

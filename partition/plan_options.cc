@@ -20,9 +20,7 @@ absl::Status ValidatePlanOptions(const PlanOptions& options) {
   }
   const double margin = options.guard_texels + options.fit.margin_texels;
   if (options.each.has_value()) return ValidateMapSize(*options.each, margin);
-  // A map of the least share of the budget (partition/divided_maps.h), at the longest aspect.
-  constexpr int64_t kLeastTexelsEach = 64;
-  const int64_t least = kLeastTexelsEach * options.max_maps;
+  const int64_t least = LeastPlanTexels(options.max_maps);
   const int64_t most = int64_t{kMaxMapSide} * kMaxMapSide;
   if (options.texels < least || options.texels > most) {
     return absl::InvalidArgumentError(

@@ -12,6 +12,7 @@
 #include "base/stop.h"
 #include "geometry/convex_hull.h"
 #include "optimizer/energy/footprint.h"
+#include "optimizer/figures/forecast_places.h"
 #include "optimizer/readback/covered_surfaces.h"
 #include "optimizer/readback/needed_surfaces.h"
 
@@ -41,12 +42,21 @@ class PixelPlanes {
     options_.use_outlines = true;
   }
 
+  // In the image's outermost rows and columns, which have no differences of their own, that of the
+  // pixel beside it, if it is on the same plane.
   std::optional<DepthGradient> At(int x, int y) const {
+    const Readback& readback = surfaces_.readback;
+    const int inner_x = std::clamp(x, 1, readback.width() - 2);
+    const int inner_y = std::clamp(y, 1, readback.height() - 2);
     DepthGradient gradient;
-    if (DepthGradientAt(surfaces_.readback, surfaces_.affine_depth, options_, x, y, &gradient)) {
-      return gradient;
+    if (!DepthGradientAt(readback, surfaces_.affine_depth, options_, inner_x, inner_y, &gradient)) {
+      return std::nullopt;
     }
-    return std::nullopt;
+    if (inner_x == x && inner_y == y) return gradient;
+    const double d = surfaces_.affine_depth.At(x, y, readback.depth[readback.Index(x, y)]);
+    if (!IsOnSurface(x, y, d, {inner_x, inner_y, gradient})) return std::nullopt;
+    gradient.d = d;
+    return gradient;
   }
 
   // Whether shadows can be seen on it: neither edge-on nor turned away, from light or eye.

@@ -1,6 +1,6 @@
 #include "partition/sphere_cells.h"
 
-#include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -66,19 +66,27 @@ void MoveToMeans(const ScratchVector<RayBin>& bins, ScratchVector<Eigen::Vector3
   }
 }
 
-// None where one of the cells has no map.
-Cells CellsAround(const CellFitter& fitter, const ScratchVector<Eigen::Vector3d>& centres) {
-  Cells cells(centres.size());
+// A centre whose cell has no map, or nothing to cover, is left out, and its bins go to the others.
+Cells CellsAround(const CellFitter& fitter, ScratchVector<Eigen::Vector3d> centres) {
   const ScratchVector<RayBin>& bins = fitter.rays().bins;
-  for (size_t i = 0; i < bins.size(); ++i) {
-    cells[ClosestTo(centres, bins[i].middle)].bins.push_back(static_cast<int>(i));
+  while (!centres.empty() && !StopRequested()) {
+    Cells cells(centres.size());
+    for (size_t i = 0; i < bins.size(); ++i) {
+      cells[ClosestTo(centres, bins[i].middle)].bins.push_back(static_cast<int>(i));
+    }
+    size_t without_map = cells.size();
+    for (size_t k = 0; k < cells.size() && without_map == cells.size(); ++k) {
+      const std::optional<CellMap> map = fitter.Fit(cells[k].bins);
+      if (map.has_value()) {
+        cells[k].map = *map;
+      } else {
+        without_map = k;
+      }
+    }
+    if (without_map == cells.size()) return cells;
+    centres.erase(centres.begin() + static_cast<std::ptrdiff_t>(without_map));
   }
-  for (Cell& cell : cells) {
-    const std::optional<CellMap> map = fitter.Fit(cell.bins);
-    if (!map.has_value()) return {};
-    cell.map = *map;
-  }
-  return cells;
+  return {};
 }
 
 }  // namespace

@@ -42,6 +42,7 @@ MAY_INCLUDE = {
     "methods": "base geometry",
     "partition": CORE,
     "partition/published": f"{CORE} methods partition",
+    "partition/shipped": f"{CORE} methods partition",
     "render": f"{CORE} partition",
     "render/generator": f"{CORE} render",
     "proto": "lightfit",

@@ -122,6 +122,38 @@ TEST_P(EveryMethod, FitsTightly) {
   }
 }
 
+// Cuts leave a part of what is in view: the map lies tightly around that.
+TEST_P(EveryMethod, FitsTightlyAroundAPartOfTheView) {
+  Random random(8);
+  int num_maps = 0;
+  for (int i = 0; i < 200; ++i) {
+    MethodInput input = testing::RandomInput(random);
+    const std::vector<Eigen::Vector3d> whole = ViewBody(input.camera, input.receivers);
+    if (whole.empty()) continue;
+    const Eigen::Vector3d normal = random.UnitVector();
+    input.cuts.emplace_back(
+        normal.x(), normal.y(), normal.z(), -normal.dot(testing::PointIn(random, whole)));
+    const absl::StatusOr<MethodMap> map = SetUpMap(GetParam(), input);
+    if (!map.ok() || map->note.starts_with("standard")) continue;
+    ++num_maps;
+    std::vector<Eigen::Vector3d> body = ViewBody(input.camera, input.receivers, input.cuts);
+    if (GetParam() == Method::kStandard) {  // the whole box all the same
+      const std::array<Eigen::Vector3d, 8> corners = BoxCorners(input.receivers);
+      body.assign(corners.begin(), corners.end());
+    }
+    Eigen::AlignedBox2d extent;
+    for (const Eigen::Vector3d& corner : body) {
+      const Eigen::Vector4d h = map->map_from_world * corner.homogeneous();
+      ASSERT_GT(h.w(), 0.0);
+      extent.extend(h.hnormalized().head<2>());
+    }
+    const Eigen::Vector2d size(input.map.width, input.map.height);
+    EXPECT_LE(extent.min().cwiseQuotient(size).cwiseAbs().maxCoeff(), kTexelTolerance);
+    EXPECT_LE((extent.max() - size).cwiseQuotient(size).cwiseAbs().maxCoeff(), kTexelTolerance);
+  }
+  EXPECT_GT(num_maps, 50);
+}
+
 TEST_P(EveryMethod, RepeatsTheSameBits) {
   Random random(4);
   for (int i = 0; i < 20; ++i) {
@@ -222,6 +254,9 @@ TEST_P(EveryMethod, NamesAWrongInput) {
   input = good;
   input.plane.emplace(Eigen::Vector3d::Zero(), 1.0);
   expect_error(input, "plane");
+  input = good;
+  input.cuts.emplace_back(0.0, std::nan(""), 1.0, 0.0);
+  expect_error(input, "cuts");
 }
 
 TEST_P(EveryMethod, FallsBackToStandardWithNothingInView) {

@@ -88,6 +88,39 @@ TEST(ViewBody, IsTheIntersectionOfFrustumAndBox) {
   EXPECT_GT(num_bodies, 150);
 }
 
+TEST(ViewBody, WithCutsIsTheIntersectionWithTheirHalfSpaces) {
+  Random random(13);
+  int num_bodies = 0, num_empty = 0;
+  for (int i = 0; i < 300; ++i) {
+    const MethodInput input = testing::RandomInput(random);
+    const std::vector<Eigen::Vector3d> whole = ViewBody(input.camera, input.receivers);
+    if (whole.empty()) continue;
+    const double size = input.receivers.sizes().norm();
+    const double tolerance = 1e-9 * (size + input.receivers.center().norm());
+    std::vector<Eigen::Vector4d> planes = AllPlanes(input), cuts;
+    for (int k = random.Int(1, 2); k > 0; --k) {
+      const Eigen::Vector3d normal = random.UnitVector();
+      Eigen::Vector4d cut;
+      cut << normal, -normal.dot(testing::PointIn(random, whole));
+      if (random.Int(0, 9) == 0) cut.w() -= 2.0 * size;  // beyond the body
+      cuts.push_back(cut);
+      planes.push_back(cut);
+    }
+    const std::vector<Eigen::Vector3d> body = ViewBody(input.camera, input.receivers, cuts);
+    const std::vector<Eigen::Vector3d> expected = BruteForceCorners(planes, tolerance);
+    ASSERT_EQ(body.empty(), expected.empty());
+    num_empty += body.empty() ? 1 : 0;
+    if (body.empty()) continue;
+    ++num_bodies;
+    for (int k = 0; k < 30; ++k) {
+      const Eigen::Vector3d direction = random.UnitVector();
+      EXPECT_NEAR(Reach(body, direction), Reach(expected, direction), 1e3 * tolerance);
+    }
+  }
+  EXPECT_GT(num_bodies, 100);
+  EXPECT_GT(num_empty, 5);
+}
+
 TEST(FrustumCorners, ProjectToTheCornersOfTheImage) {
   Random random(12);
   for (int i = 0; i < 50; ++i) {
