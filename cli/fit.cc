@@ -9,12 +9,14 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "base/output_file.h"
 #include "base/progress.h"
 #include "cli/exit_code.h"
 #include "cli/fit_summary.h"
 #include "cli/flags/fit_inputs.h"
 #include "cli/reports/fit_report.h"
+#include "cli/reports/plan_report.h"
 #include "jobs/fit_comparison.h"
 #include "picture/fit_page.h"
 #include "picture/png.h"
@@ -150,11 +152,16 @@ Outcome FitAndDraw(const FitFlags& flags, const FitOptions& options, const FitIn
   if (draws) {
     progress.Begin("drawing");
     const PictureOptions picture = {
-        TitleOf(flags.readback_path), options.samples, ShortMethodText(options)};
-    outcome.picture =
-        compared.surfaces.ok()
-            ? DrawPicture(*compared.surfaces, outcome.comparisons, flags.map, picture, typeface)
-            : compared.surfaces.status();
+        TitleOf(flags.readback_path),
+        plan.has_value()
+            ? PlanSizeText(*plan)
+            : absl::StrFormat("shadow map %d x %d texels", flags.map.width, flags.map.height),
+        options.samples,
+        ShortMethodText(options),
+        flags.plan.guard_texels};
+    outcome.picture = compared.surfaces.ok()
+                          ? DrawPicture(*compared.surfaces, outcome.comparisons, picture, typeface)
+                          : compared.surfaces.status();
   }
   return outcome;
 }
