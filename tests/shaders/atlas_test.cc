@@ -302,7 +302,7 @@ TEST_F(PlanAtlas, WhatTheExampleDrawsIsFound) {
       num_dark_borders);
   EXPECT_GT(num_dark, 1000);
   EXPECT_GT(num_lit, 100);
-  EXPECT_GT(num_several, 1);
+  EXPECT_GT(num_several, 0);
   EXPECT_GT(num_dark_borders, 0);
   EXPECT_GT(num_lit_borders, 0);
 }
