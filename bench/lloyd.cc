@@ -204,8 +204,7 @@ int PrintFigure13() {
   FigureTable table("Figure 13, first number of maps with which FP+ZP+W needs less");
   for (size_t i = 0; i < std::size(LloydFigures::kAlphas); ++i) {
     const LloydView view = {1.0, LloydFigures::kAlphas[i], M_PI / 6.0};
-    int maps = 4;
-    while (BehindFaceWarpStorage(view, maps / 4) >= BehindStorage(view, maps)) maps += 4;
+    const int maps = testing::FirstMapsOfFaces(view);
     table.Add(absl::StrFormat("f/n = %g", view.far), LloydFigures::kFirstMaps[i], maps);
   }
   return table.Finish();

@@ -13,6 +13,7 @@
 #include "picture/line_chart.h"
 #include "picture/png.h"
 #include "picture/theme.h"
+#include "tests/partition/published/lloyd_view.h"
 
 namespace lightfit {
 namespace {
@@ -183,9 +184,7 @@ Canvas DrawWhereFacesPay(const Typeface& typeface) {
       {{"faces need less from here on",
         [](double log_alpha) {
           const LloydView view = {1.0, std::pow(10.0, log_alpha), M_PI / 6.0};
-          int maps = 4;
-          while (BehindFaceWarpStorage(view, maps / 4) >= BehindStorage(view, maps)) maps += 4;
-          return static_cast<double>(maps);
+          return static_cast<double>(testing::FirstMapsOfFaces(view));
         }}},
       /*log_y=*/false};
   return DrawPage("Figure 13: splits by depth or by faces", {figure}, typeface);

@@ -27,7 +27,7 @@ struct FacePartitionOptions {
   int num_parts = 1;           // of each side face, at equal ratios of depth
   bool warp = true;            // otherwise each cell has its focused map
   bool has_near_face = false;  // a map of its own; otherwise the sides are stretched over it
-  MapShapes shapes = MapShapes::kByStorage;  // the cells differ in size
+  PlanShapes shapes = PlanShapes::kByStorage;  // the cells differ in size
   double margin_texels = 0.0;  // around what a map serves, what PlanLookUp guards; >= 0
 };
 

@@ -43,7 +43,7 @@ MapSize SizeOfAspect(double texels, double aspect, int min_side) {
 
 absl::StatusOr<Plan> PlanOfParts(const MethodInput& input,
                                  const std::vector<PlanPart>& parts,
-                                 MapShapes shapes,
+                                 PlanShapes shapes,
                                  double margin_texels) {
   const int num_parts = static_cast<int>(parts.size());
   if (num_parts < 1 || num_parts > kMaxPlanMaps) {
@@ -58,7 +58,7 @@ absl::StatusOr<Plan> PlanOfParts(const MethodInput& input,
   if (!square.ok()) return square.status();
   Plan plan;
   plan.light_name = input.light.name;
-  if (shapes == MapShapes::kEqualSquares) {
+  if (shapes == PlanShapes::kEqualSquares) {
     for (const PlanPart& part : parts) {
       plan.maps.push_back(MapOfSize(part, *square, margin_texels));
     }
@@ -78,7 +78,7 @@ absl::StatusOr<Plan> PlanOfParts(const MethodInput& input,
   const double rest = 1.0 * input.map.width * input.map.height - num_parts * least;
   for (int i = 0; i < num_parts; ++i) {
     const double share =
-        shapes == MapShapes::kByStorage ? errors[i].u * errors[i].v / sum : 1.0 / num_parts;
+        shapes == PlanShapes::kByStorage ? errors[i].u * errors[i].v / sum : 1.0 / num_parts;
     const MapSize size = SizeOfAspect(least + share * rest, errors[i].u / errors[i].v, min_side);
     plan.maps.push_back(MapOfSize(parts[i], size, margin_texels));
   }

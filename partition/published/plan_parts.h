@@ -19,7 +19,7 @@
 
 namespace lightfit {
 
-enum class MapShapes {
+enum class PlanShapes {
   kEqualSquares,  // as engines keep them in an array
   kAspects,       // as many texels for each, at its own aspect
   kByStorage      // ... and in proportion to its storage factor
@@ -39,7 +39,7 @@ MapSize SizeOfAspect(double texels, double aspect, int min_side = 1);
 // InvalidArgument when there are more parts than a plan may have, or too few texels for them.
 absl::StatusOr<Plan> PlanOfParts(const MethodInput& input,
                                  const std::vector<PlanPart>& parts,
-                                 MapShapes shapes,
+                                 PlanShapes shapes,
                                  double margin_texels);
 
 }  // namespace lightfit

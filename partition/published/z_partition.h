@@ -28,7 +28,7 @@ struct ZPartitionOptions {
   int num_maps = 4;        // 1 ... kMaxPlanMaps
   double log_share = 1.0;  // 1: equal ratios; 0: equal distances; their mix between (Zhang: 0.5)
   Method method = Method::kLispsm;
-  MapShapes shapes = MapShapes::kEqualSquares;
+  PlanShapes shapes = PlanShapes::kEqualSquares;
   double margin_texels = 0.0;  // around what a map serves, what PlanLookUp guards; >= 0
 };
 

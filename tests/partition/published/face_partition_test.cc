@@ -223,7 +223,7 @@ TEST(FacePartition, ServesEveryPointInView) {
     options.num_parts = random.Int(1, 4);
     options.warp = random.Coin();
     options.has_near_face = random.Coin();
-    options.shapes = MapShapes{random.Int(0, 2)};
+    options.shapes = PlanShapes{random.Int(0, 2)};
     options.margin_texels = random.Coin() ? 0.0 : 2.0;
     const absl::StatusOr<Plan> plan = FacePartition(input, options);
     if (!plan.ok()) {
@@ -300,7 +300,7 @@ TEST(FacePartition, OfDegenerateInputIsFiniteOrSaysWhy) {
     FacePartitionOptions options;
     options.num_parts = random.Int(1, 3);
     options.has_near_face = random.Coin();
-    options.shapes = MapShapes{random.Int(0, 2)};
+    options.shapes = PlanShapes{random.Int(0, 2)};
     const absl::StatusOr<Plan> plan = FacePartition(input, options);
     if (!plan.ok()) {
       EXPECT_EQ(plan.status().code(), absl::StatusCode::kFailedPrecondition) << plan.status();

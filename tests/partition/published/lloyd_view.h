@@ -51,6 +51,14 @@ inline std::vector<Eigen::Vector3d> SunsAbove(int steps) {
   return suns;
 }
 
+// Figure 13: the first number of maps, in steps of four, with which splits by faces need fewer
+// texels under a light behind than splits by depth.
+inline int FirstMapsOfFaces(const LloydView& view) {
+  int maps = 4;
+  while (BehindFaceWarpStorage(view, 0.25 * maps) >= BehindStorage(view, maps)) maps += 4;
+  return maps;
+}
+
 // What the figures show by the corrected equations, to the digits given.
 struct LloydFigures {
   // Figure 5, n = 1, f = 20: last factors of (7) and (8) at near and far, for n' = n, that of
@@ -79,8 +87,7 @@ struct LloydFigures {
   static constexpr int kOverheadMaps[2] = {4, 8};
   static constexpr double kOverhead[2] = {90.1, 22.5};
 
-  // Figure 13: the first number of maps, in steps of four, with which splits by faces need fewer
-  // texels behind than splits by depth.
+  // Figure 13: FirstMapsOfFaces().
   static constexpr double kAlphas[10] = {5, 10, 20, 50, 100, 200, 500, 1000, 5000, 10000};
   static constexpr int kFirstMaps[10] = {8, 8, 8, 12, 12, 16, 16, 20, 20, 24};
 

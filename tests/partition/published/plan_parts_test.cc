@@ -61,8 +61,8 @@ TEST(PlanOfParts, KeepsToTheBudgetInEveryShape) {
     input.map = {random.Int(1, 1000), random.Int(1, 1000)};
     const std::vector<PlanPart> parts = RandomParts(input, random);
     const double margin = random.Coin() ? 0.0 : random.Uniform(0.0, 3.0);
-    for (const MapShapes shapes :
-         {MapShapes::kEqualSquares, MapShapes::kAspects, MapShapes::kByStorage}) {
+    for (const PlanShapes shapes :
+         {PlanShapes::kEqualSquares, PlanShapes::kAspects, PlanShapes::kByStorage}) {
       const absl::StatusOr<Plan> plan = PlanOfParts(input, parts, shapes, margin);
       if (!plan.ok()) {
         EXPECT_THAT(plan, StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("more texels")));
@@ -93,7 +93,7 @@ struct Spread {
   double between = 1.0;  // of the products of two maps' errors
 };
 
-Spread SpreadOf(const MethodInput& input, const std::vector<PlanPart>& parts, MapShapes shapes) {
+Spread SpreadOf(const MethodInput& input, const std::vector<PlanPart>& parts, PlanShapes shapes) {
   const absl::StatusOr<Plan> plan = PlanOfParts(input, parts, shapes, 0.0);
   EXPECT_THAT(plan, IsOk());
   Spread spread;
@@ -119,11 +119,11 @@ TEST(PlanOfParts, MakesErrorsAlike) {
     MethodInput input = testing::LevelView(random.UnitVector());
     input.map = {20000, 20000};
     const std::vector<PlanPart> parts = RandomParts(input, random);
-    squares = std::max(squares, SpreadOf(input, parts, MapShapes::kEqualSquares).within);
-    const Spread with_aspects = SpreadOf(input, parts, MapShapes::kAspects);
+    squares = std::max(squares, SpreadOf(input, parts, PlanShapes::kEqualSquares).within);
+    const Spread with_aspects = SpreadOf(input, parts, PlanShapes::kAspects);
     EXPECT_LT(with_aspects.within, kWholeTexels);
     aspects = std::max(aspects, with_aspects.between);
-    const Spread by_storage = SpreadOf(input, parts, MapShapes::kByStorage);
+    const Spread by_storage = SpreadOf(input, parts, PlanShapes::kByStorage);
     EXPECT_LT(by_storage.within, kWholeTexels);
     EXPECT_LT(by_storage.between, kWholeTexels);
   }
@@ -135,16 +135,16 @@ TEST(PlanOfParts, SaysWhatIsTooMuch) {
   MethodInput input = testing::LevelView({0.0, -1.0, 0.0});
   PlanPart part;
   part.map_from_world = SetUpMap(Method::kFocused, input)->map_from_world;
-  EXPECT_THAT(PlanOfParts(input, {}, MapShapes::kAspects, 0.0),
+  EXPECT_THAT(PlanOfParts(input, {}, PlanShapes::kAspects, 0.0),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("a plan of 0 maps")));
   EXPECT_THAT(
-      PlanOfParts(input, std::vector<PlanPart>(kMaxPlanMaps + 1, part), MapShapes::kAspects, 0.0),
+      PlanOfParts(input, std::vector<PlanPart>(kMaxPlanMaps + 1, part), PlanShapes::kAspects, 0.0),
       StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("want 1 ... 32")));
   input.map = {2, 2};
-  EXPECT_THAT(PlanOfParts(input, std::vector<PlanPart>(5, part), MapShapes::kAspects, 0.0),
+  EXPECT_THAT(PlanOfParts(input, std::vector<PlanPart>(5, part), PlanShapes::kAspects, 0.0),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("map = 2x2: 5 equal maps")));
   // Nothing in view of them: as many texels for each.
-  const auto plan = PlanOfParts(input, {part, part}, MapShapes::kByStorage, 0.0);
+  const auto plan = PlanOfParts(input, {part, part}, PlanShapes::kByStorage, 0.0);
   ASSERT_THAT(plan, IsOk());
   EXPECT_EQ(NumTexels(*plan), 4);
   EXPECT_EQ(plan->maps[0].size.width * plan->maps[0].size.height, 2);

@@ -155,7 +155,7 @@ ZPartitionOptions RandomOptions(Random& random) {
   options.num_maps = random.Int(1, 8);
   options.log_share = random.Coin() ? 1.0 : random.Uniform(0.0, 1.0);
   options.method = random.Coin() ? Method::kLispsm : Method::kFocused;
-  options.shapes = MapShapes{random.Int(0, 2)};
+  options.shapes = PlanShapes{random.Int(0, 2)};
   options.margin_texels = random.Coin() ? 0.0 : 2.0;
   return options;
 }
