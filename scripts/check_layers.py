@@ -45,6 +45,7 @@ MAY_INCLUDE = {
     "partition/shipped": f"{CORE} methods partition",
     "render": f"{CORE} partition",
     "render/generator": f"{CORE} render",
+    "render/shipped": f"{CORE} partition partition/shipped render",
     "proto": "lightfit",
     "wire": WIRE,
     "io": IO,
