@@ -370,16 +370,15 @@ void PrintTargets(const std::vector<Row>& rows, const Lamps& lamps) {
 }
 
 void PrintMissing(const std::vector<Row>& rows, const std::vector<LampRow>& lamps) {
-  std::printf("\n== not there\n");
+  std::string missing;
   for (const LampRow& lamp : lamps) {
     for (size_t row = 0; row < rows.size(); ++row) {
       if (lamp.rows[row].is_there) continue;
-      std::printf("%s, %s: %s\n",
-                  lamp.scene.c_str(),
-                  rows[row].name.c_str(),
-                  lamp.rows[row].why_not.c_str());
+      absl::StrAppend(
+          &missing, lamp.scene, ", ", rows[row].name, ": ", lamp.rows[row].why_not, "\n");
     }
   }
+  if (!missing.empty()) std::printf("\n== not there\n%s", missing.c_str());
 }
 
 void Print(const std::vector<Row>& rows, const std::vector<LampRow>& lamps) {
