@@ -142,8 +142,8 @@ struct Row {
   Judge judge;
 };
 
-Row PlanRow(const std::string& name,
-            const std::function<absl::StatusOr<Plan>(const LampView& lamp)>& make) {
+Row RowOfPlan(const std::string& name,
+              const std::function<absl::StatusOr<Plan>(const LampView& lamp)>& make) {
   return {name,
           [make](const LampView& lamp,
                  const std::vector<Lighting>& truth,
@@ -156,8 +156,8 @@ Row PlanRow(const std::string& name,
           }};
 }
 
-Row CubeRow(const std::string& name, bool needed_faces_only, bool turned) {
-  return PlanRow(name, [needed_faces_only, turned](const LampView& lamp) {
+Row RowOfCube(const std::string& name, bool needed_faces_only, bool turned) {
+  return RowOfPlan(name, [needed_faces_only, turned](const LampView& lamp) {
     CubeFacesOptions options;
     options.needed_faces_only = needed_faces_only;
     options.turned = turned;
@@ -165,13 +165,13 @@ Row CubeRow(const std::string& name, bool needed_faces_only, bool turned) {
   });
 }
 
-Row FittedRow(const std::string& name, int num_maps, Cover cover, bool choose_by_forecast) {
+Row RowOfFit(const std::string& name, int num_maps, Cover cover, bool choose_by_forecast) {
   PlanOptions options;
   options.max_maps = num_maps;
   options.texels = kTexels;
   options.choose_by_forecast = choose_by_forecast;
   options.fit.cover = cover;
-  return PlanRow(name, [options](const LampView& lamp) -> absl::StatusOr<Plan> {
+  return RowOfPlan(name, [options](const LampView& lamp) -> absl::StatusOr<Plan> {
     const absl::StatusOr<LightPlan> plan = FitPlan(**lamp.surfaces, lamp.light, options);
     if (!plan.ok()) return plan.status();
     return PlanOf(*plan);
@@ -179,7 +179,7 @@ Row FittedRow(const std::string& name, int num_maps, Cover cover, bool choose_by
 }
 
 // Without a normal the plane is free.
-Row PairRow(const std::string& name, std::optional<Eigen::Vector3d> normal, bool drawn) {
+Row RowOfPair(const std::string& name, const std::optional<Eigen::Vector3d>& normal, bool drawn) {
   return {name,
           [normal, drawn](const LampView& lamp,
                           const std::vector<Lighting>& truth,
@@ -200,21 +200,21 @@ Row PairRow(const std::string& name, std::optional<Eigen::Vector3d> normal, bool
 }
 
 std::vector<Row> MakeRows() {
-  std::vector<Row> rows = {CubeRow("cube, all faces", false, false),
-                           CubeRow("cube, needed faces", true, false),
-                           CubeRow("cube, turned", true, true),
-                           PairRow("pair, normal x", Eigen::Vector3d::UnitX(), false),
-                           PairRow("pair, normal y (up)", Eigen::Vector3d::UnitY(), false),
-                           PairRow("pair, normal z", Eigen::Vector3d::UnitZ(), false),
-                           PairRow("pair, free", std::nullopt, false),
-                           PairRow("pair, free, drawn", std::nullopt, true)};
+  std::vector<Row> rows = {RowOfCube("cube, all faces", false, false),
+                           RowOfCube("cube, needed faces", true, false),
+                           RowOfCube("cube, turned", true, true),
+                           RowOfPair("pair, normal x", Eigen::Vector3d::UnitX(), false),
+                           RowOfPair("pair, normal y (up)", Eigen::Vector3d::UnitY(), false),
+                           RowOfPair("pair, normal z", Eigen::Vector3d::UnitZ(), false),
+                           RowOfPair("pair, free", std::nullopt, false),
+                           RowOfPair("pair, free, drawn", std::nullopt, true)};
   for (const bool forecast : {false, true}) {
     const std::string chosen = forecast ? ", chosen" : "";
     for (const int num_maps : {2, 3, 4, 6}) {
-      rows.push_back(FittedRow(
+      rows.push_back(RowOfFit(
           absl::StrCat(num_maps, " maps, dark", chosen), num_maps, Cover::kShadowed, forecast));
     }
-    rows.push_back(FittedRow(absl::StrCat("6 maps, all", chosen), 6, Cover::kReceivers, forecast));
+    rows.push_back(RowOfFit(absl::StrCat("6 maps, all", chosen), 6, Cover::kReceivers, forecast));
   }
   return rows;
 }
@@ -370,16 +370,15 @@ void PrintTargets(const std::vector<Row>& rows, const Lamps& lamps) {
 }
 
 void PrintMissing(const std::vector<Row>& rows, const std::vector<LampRow>& lamps) {
-  std::printf("\n== not there\n");
+  std::string missing;
   for (const LampRow& lamp : lamps) {
     for (size_t row = 0; row < rows.size(); ++row) {
       if (lamp.rows[row].is_there) continue;
-      std::printf("%s, %s: %s\n",
-                  lamp.scene.c_str(),
-                  rows[row].name.c_str(),
-                  lamp.rows[row].why_not.c_str());
+      absl::StrAppend(
+          &missing, lamp.scene, ", ", rows[row].name, ": ", lamp.rows[row].why_not, "\n");
     }
   }
+  if (!missing.empty()) std::printf("\n== not there\n%s", missing.c_str());
 }
 
 void Print(const std::vector<Row>& rows, const std::vector<LampRow>& lamps) {

@@ -96,7 +96,8 @@ class PlanMaps : public TexelMaps {
   std::optional<Ray> RayOf(int32_t texel) const override {
     const auto map = std::upper_bound(begin_.begin(), begin_.end(), texel) - begin_.begin() - 1;
     const int32_t in_map = texel - begin_[map], width = plan_.maps[map].size.width;
-    return rays_[map].At(in_map % width + 0.5, in_map / width + 0.5);
+    const int32_t row = in_map / width;
+    return rays_[map].At(in_map % width + 0.5, row + 0.5);
   }
 
  private:

@@ -22,7 +22,8 @@ class OneMap : public TexelMaps {
   int64_t num_texels() const override { return int64_t{size_.width} * size_.height; }
   int32_t TexelOf(const Eigen::Vector3d&) const override { return 0; }
   std::optional<Ray> RayOf(int32_t texel) const override {
-    return rays_.At(texel % size_.width + 0.5, texel / size_.width + 0.5);
+    const int row = texel / size_.width;
+    return rays_.At(texel % size_.width + 0.5, row + 0.5);
   }
 
  private:
