@@ -13,9 +13,9 @@
 
 namespace lightfit {
 
-// As EvaluateMatrix(), each sample in the map that it asks. Samples outside of all maps, which are
-// lit at a lit border, are in no figure: FootprintStatistics::num_behind says how many. Half spaces
-// of the maps count for the samples and not for the forecast.
+// As EvaluateMatrix(), each sample in the map that it asks. Samples outside of all maps, which the
+// border answers, are in no figure: FootprintStatistics::num_behind says how many. Half spaces of
+// the maps count for the samples and not for the forecast.
 //
 // `guard_texels` as PlanLookUp has them, >= 0; the forecast is made without. Errors as
 // EvaluateMatrix(), and as PlanLookUp::Create(); FailedPrecondition when no sample asks a map.

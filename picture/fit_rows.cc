@@ -222,7 +222,7 @@ void FitRows::DrawPlanLegend(int max_maps) {
   std::vector<LegendEntry> entries = {{HeatColor(0.15), "fine texels"},
                                       {HeatColor(0.95), "coarse texels"},
                                       {kBoundaryColor, "shadow edge that counts"},
-                                      {kUnratedColor, "not rated"},
+                                      {kUnratedColor, "not rated, or in no map"},
                                       {kUnratedColor, "outside of all maps", true}};
   for (int k = 0; k < std::min(max_maps, kMostMapsInLegend); ++k) {
     entries.push_back({MapColor(k), absl::StrCat("map ", k)});

@@ -109,7 +109,8 @@ std::string PlanLegend(const PlanOptions& options) {
       "nearest texel and no fault of the bias. Fewer than: how many times fewer the plan has;\n"
       "\"same\": about as many, as far as can be foretold.\n"
       "Energy: the sum of footprints at the shadow edges in the metric of the fit, each in the map "
-      "that\nis asked there; lit edge pixels outside of all maps, a few per cent, are in none.\n"
+      "that\nis asked there; edge pixels outside of all maps, which the border answers, are in "
+      "none.\n"
       "Footprint: how far one texel reaches on the screen, in read-back pixels; below 1 is finer.\n"
       "Time: the plan of that light.\n",
       one.width,
