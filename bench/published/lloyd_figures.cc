@@ -1,4 +1,4 @@
-#include "bench/lloyd_figures.h"
+#include "bench/published/lloyd_figures.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
-// bench/lloyd.cc : the figures of Lloyd et al. 2006, "Warping and Partitioning for Low Error Shadow
-// Maps", as numbers and pictures.
+// bench/published/lloyd.cc : the figures of Lloyd et al. 2006, "Warping and Partitioning for Low
+// Error Shadow Maps", as numbers and pictures.
 //
 // In:   their views, f/n and half angle; no scene. --steps: suns from overhead to the horizon.
 // Out:  per figure what is to come out by the corrected equations, the closed form, and what is
@@ -21,7 +21,7 @@
 
 #include "absl/strings/str_format.h"
 #include "base/table.h"
-#include "bench/lloyd_figures.h"
+#include "bench/published/lloyd_figures.h"
 #include "methods/focused.h"
 #include "methods/view_body.h"
 #include "partition/published/face_partition.h"

@@ -1,4 +1,4 @@
-// bench/lloyd_figures.h
+// bench/published/lloyd_figures.h
 //
 // The charts of Lloyd et al. 2006, figures 5, 6, 7, 10, 12 and 13, drawn from the corrected
 // equations; figure 7 from storage factors that were measured.
