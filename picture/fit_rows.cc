@@ -31,8 +31,7 @@ constexpr int kLightNameSize = 21;
 constexpr int kPanelTitleSize = 16;
 constexpr int kCaptionSize = 14;
 
-// A legend names so many maps of a plan; the others have their numbers in the picture.
-constexpr int kMostMapsInLegend = 8;
+constexpr int kMostMapsInLegend = 8;  // of a plan; the others have their numbers in the picture
 
 // "3.08 times fewer than focused", or more: never a ratio below 1, which has to be read twice.
 std::string GainText(const Figures& before, const Figures& after, absl::string_view name) {

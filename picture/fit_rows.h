@@ -77,7 +77,7 @@ class FitRows {
                  const LogScale& scale);
   void ScaleBar(const LogScale& scale);
   void Legend(const std::vector<LegendEntry>& entries, const std::string& text);
-  int panels_y() const;
+  int panels_y() const;  // of the row in work
   void EndRow();
 
   const FitLayout& layout_;

@@ -172,6 +172,7 @@ void DrawHatchedSquare(int x, int y, int size, Canvas* canvas) {
 Canvas DrawPlanMaps(
     const PlanView& view, const Plan& plan, int width, int height, const Typeface& typeface) {
   Canvas canvas(width, height, kPageColor);
+  if (plan.maps.empty()) return canvas;
   const int count = static_cast<int>(plan.maps.size());
   const int columns = BestColumns(count, width + kPanelGap, height + kPanelGap);
   const int rows = (count + columns - 1) / columns;

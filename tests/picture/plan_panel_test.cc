@@ -161,6 +161,10 @@ TEST(PlanMaps, AreDrawnWhateverTheirNumberAndTheRoom) {
   }
 }
 
+TEST(PlanMaps, OfNoMapsAreAnEmptyPage) {
+  EXPECT_EQ(DrawPlanMaps(PlanView(), Plan(), 100, 50, Typeface()).width(), 100);
+}
+
 TEST(PlanMaps, OfAnotherLightAreRefused) {
   const Planned at;
   const Light lamp = Light::Point("lamp", {0.0, 0.0, 5.0});
