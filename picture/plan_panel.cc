@@ -172,10 +172,9 @@ void DrawHatchedSquare(int x, int y, int size, Canvas* canvas) {
 Canvas DrawPlanMaps(
     const PlanView& view, const Plan& plan, int width, int height, const Typeface& typeface) {
   Canvas canvas(width, height, kPageColor);
-  if (plan.maps.empty()) return canvas;
   const int count = static_cast<int>(plan.maps.size());
   const int columns = BestColumns(count, width + kPanelGap, height + kPanelGap);
-  const int rows = (count + columns - 1) / columns;
+  const int rows = std::max(1, (count + columns - 1) / columns);
   const int cell_width = (width + kPanelGap) / columns, cell_height = (height + kPanelGap) / rows;
   const int side = std::min(cell_width, cell_height - kMapTitleHeight) - kPanelGap;
   if (side <= 2 * kSmallBorder) return canvas;
