@@ -80,6 +80,18 @@ class Finisher {
         DivideTexels(fitter_, cells, static_cast<double>(options_.texels));
     for (size_t k = 0; k < cells.size(); ++k) {
       const MapSize size = options_.each.value_or(WholeSize(cells[k].map, texels[k]));
+      const double margin = options_.guard_texels + options_.fit.margin_texels;
+      if (!(2.0 * margin < std::min(size.width, size.height))) {
+        return absl::FailedPreconditionError(
+            absl::StrFormat("light \"%s\": options.guard_texels = %g leave nothing of a map of "
+                            "%dx%d texels, one of "
+                            "%d; want fewer maps or more texels",
+                            view_.light->name,
+                            options_.guard_texels,
+                            size.width,
+                            size.height,
+                            cells.size()));
+      }
       std::optional<Eigen::Matrix3d> map_from_ray = fitter_.MapOfSize(
           cells[k].bins, cells[k].map, size, options_.guard_texels + options_.fit.margin_texels);
       const std::optional<CellCover> cover = CoverBins(fitter_.rays(), cells[k].bins, *view_.light);

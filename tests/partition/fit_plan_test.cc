@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <stop_token>
 #include <vector>
@@ -314,6 +315,20 @@ TEST(FitPlan, SaysWhichOptionIsWrong) {
   options.guard_texels = 2.0;
   EXPECT_THAT(FitPlan(at.surfaces, light, options),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("4x4")));
+}
+
+// With the choice there may be a plan of fewer and larger maps.
+TEST(FitPlan, AGuardTooLargeForItsMapsIsSaidOrAvoided) {
+  const Case at(1);
+  PlanOptions options = OptionsOf(8);
+  options.guard_texels = 40.0;
+  options.choose_by_forecast = false;
+  EXPECT_THAT(FitPlan(at.surfaces, at.scene.lights[0], options),
+              StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("guard_texels = 40")));
+  options.choose_by_forecast = true;
+  const auto plan = FitPlan(at.surfaces, at.scene.lights[0], options);
+  ASSERT_THAT(plan, IsOk());
+  for (const LightMatrix& map : plan->maps) EXPECT_GT(std::min(map.map.width, map.map.height), 80);
 }
 
 TEST(FitPlan, StopsWhenAsked) {
