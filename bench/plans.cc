@@ -14,7 +14,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,21 +23,17 @@
 #include "absl/strings/str_format.h"
 #include "base/progress.h"
 #include "base/text_file.h"
+#include "bench/plan_rows.h"
 #include "bench/scene_set.h"
 #include "jobs/compare/stage.h"
-#include "methods/method.h"
 #include "optimizer/figures/foretell.h"
-#include "optimizer/fit.h"
 #include "optimizer/readback/surfaces.h"
-#include "partition/fit_plan.h"
 #include "render/judge_plan.h"
+#include "render/plan_costs.h"
 #include "render/true_lighting.h"
 
 namespace lightfit {
 namespace {
-
-constexpr MapSize kMap = {400, 400};
-constexpr int64_t kTexels = int64_t{400} * 400;
 
 struct Arguments {
   int num_lights = 6;
@@ -57,8 +52,8 @@ struct Measured {
   bool is_there = false;
   double ideal = 0.0, practical = 0.0, outside = 0.0;
   double seconds = 0.0;
-  double energy = 0.0;
-  double foretold = 0.0;  // wrong pixels
+  double overlap = 0.0, draws = 0.0;  // maps that hold a receiver; draws for each caster
+  double foretold = 0.0;              // wrong pixels
   int num_maps = 0;
 };
 
@@ -83,73 +78,6 @@ struct View {
   }
 };
 
-// What one row is made by: a plan from the two read-backs' surfaces.
-struct Inputs {
-  const MethodInput& method;
-  const Surfaces& small;
-  const Surfaces& large;
-  const Light& light;
-};
-struct Row {
-  std::string name;
-  bool from_large;
-  std::function<absl::StatusOr<LightPlan>(const Inputs&)> make;
-};
-
-LightPlan PlanOfMatrix(const Eigen::Matrix4d& map_from_world) {
-  LightPlan plan;
-  LightMatrix matrix;
-  matrix.map = kMap;
-  matrix.map_from_world = map_from_world;
-  plan.maps.push_back(matrix);
-  return plan;
-}
-
-Row PublishedRow(Method method) {
-  return {MethodName(method), false, [method](const Inputs& inputs) -> absl::StatusOr<LightPlan> {
-            MethodInput input = inputs.method;
-            input.light = inputs.light;
-            input.map = kMap;
-            const absl::StatusOr<MethodMap> map = SetUpMap(method, input);
-            if (!map.ok()) return map.status();
-            return PlanOfMatrix(map->map_from_world);
-          }};
-}
-
-Row FittedRow(const std::string& name, bool from_large, const PlanOptions& options) {
-  return {name, from_large, [from_large, options](const Inputs& inputs) {
-            return FitPlan(from_large ? inputs.large : inputs.small, inputs.light, options);
-          }};
-}
-
-std::vector<Row> MakeRows(const Arguments& arguments) {
-  PlanOptions one;
-  one.max_maps = 1;
-  one.texels = kTexels;
-  std::vector<Row> rows = {FittedRow("one map", false, one)};
-  PlanOptions automatic = one;
-  automatic.fit.border = BorderChoice::kAutomatic;
-  rows.push_back(FittedRow("one, border chosen", false, automatic));
-  rows.push_back(FittedRow("one map, large", true, one));
-  PlanOptions as_published = one;
-  as_published.fit = FitOptions::AsPublished();
-  as_published.fit.sample_by_sample = false;
-  rows.push_back(FittedRow("as published", false, as_published));
-  rows.push_back(PublishedRow(Method::kFocused));
-  rows.push_back(PublishedRow(Method::kLispsm));
-  for (const bool from_large : {false, true}) {
-    for (const int num_maps : arguments.num_maps) {
-      PlanOptions plan = one;
-      plan.max_maps = num_maps;
-      const int side = from_large ? arguments.large_readback : arguments.readback;
-      rows.push_back(FittedRow(absl::StrCat(num_maps, " maps, ", side), from_large, plan));
-      plan.fit.border = BorderChoice::kAutomatic;
-      rows.push_back(FittedRow(absl::StrCat(num_maps, " maps, ", side, ", a"), from_large, plan));
-    }
-  }
-  return rows;
-}
-
 class LightBench {
  public:
   LightBench(const CompareStage& stage,
@@ -165,13 +93,13 @@ class LightBench {
     light_.shadow_bit = 0;
   }
 
-  absl::StatusOr<std::vector<Measured>> Measure(const std::vector<Row>& rows) const {
+  absl::StatusOr<std::vector<Measured>> Measure(const std::vector<PlanRow>& rows) const {
     const absl::StatusOr<Surfaces> small = FindSurfaces(small_view_.readback, 1, {});
     if (!small.ok()) return small.status();
     const absl::StatusOr<Surfaces> large = FindSurfaces(large_view_.readback, 1, {});
     if (!large.ok()) return large.status();
     std::vector<Measured> measured;
-    for (const Row& row : rows) {
+    for (const PlanRow& row : rows) {
       measured.push_back(MeasureRow(row, {stage_.view, *small, *large, light_}));
     }
     if (!measured.front().is_there) return absl::NotFoundError("no single map");
@@ -179,34 +107,45 @@ class LightBench {
   }
 
  private:
-  Measured MeasureRow(const Row& row, const Inputs& inputs) const {
+  Measured MeasureRow(const PlanRow& row, const PlanInputs& inputs) const {
+    Measured best;
+    for (const auto& make : row.make) {
+      const Measured measured = MeasurePlan(row, make, inputs);
+      if (measured.is_there && (!best.is_there || measured.ideal < best.ideal)) best = measured;
+    }
+    return best;
+  }
+
+  Measured MeasurePlan(const PlanRow& row,
+                       const PlanRow::Make& make,
+                       const PlanInputs& inputs) const {
     Measured measured;
     const auto begin = std::chrono::steady_clock::now();
-    const absl::StatusOr<LightPlan> plan = row.make(inputs);
+    const absl::StatusOr<Plan> plan = make(inputs);
     measured.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     if (!plan.ok()) return measured;
     JudgeOptions judge;
     judge.phases = arguments_.phases;
     const absl::StatusOr<ShadowImage> image =
-        JudgePlan(*stage_.caster, stage_.screen, truth_, light_, PlanOf(*plan), judge);
+        JudgePlan(*stage_.caster, stage_.screen, truth_, light_, *plan, judge);
     if (!image.ok()) return measured;
-    measured.is_there = NumTexels(PlanOf(*plan)) <= kTexels;
+    const absl::StatusOr<PlanCosts> costs =
+        MeasurePlanCosts(*stage_.caster, stage_.screen, truth_, light_, *plan);
+    if (!costs.ok()) return measured;
+    measured.is_there = NumTexels(*plan) <= kPlanTexels;
     measured.ideal = static_cast<double>(image->wrong.ideal);
     measured.practical = static_cast<double>(image->wrong.practical);
     measured.outside = static_cast<double>(image->wrong.outside);
-    measured.energy = plan->energy;
     measured.num_maps = static_cast<int>(plan->maps.size());
+    measured.overlap = costs->overlap;
+    measured.draws = costs->draws_per_caster;
     std::vector<SizedMatrix> maps;
-    for (const LightMatrix& map : plan->maps) maps.push_back({map.map_from_world, map.map});
+    for (const PlanMap& map : plan->maps) maps.push_back({map.map_from_world, map.size});
     constexpr double kPixels = static_cast<double>(kScreenSize) * kScreenSize;
+    const Readback& readback = row.from_large ? large_view_.readback : small_view_.readback;
     measured.foretold =
-        kPixels * ForetellWrongShare(row.from_large ? large_view_.readback : small_view_.readback,
-                                     light_,
-                                     maps,
-                                     {},
-                                     plan->border)
-                      .value_or(0.0);
+        kPixels * ForetellWrongShare(readback, light_, maps, {}, plan->border).value_or(0.0);
     return measured;
   }
 
@@ -219,7 +158,7 @@ class LightBench {
 
 absl::Status MeasureScene(size_t index,
                           const Arguments& arguments,
-                          const std::vector<Row>& rows,
+                          const std::vector<PlanRow>& rows,
                           Progress& progress,
                           std::vector<LightRow>* lights) {
   const SceneCase& scene = SceneCases()[index];
@@ -271,36 +210,80 @@ std::string RatioText(
   return text;
 }
 
-void PrintRatios(const std::string& title, const std::vector<Row>& rows, const Lights& lights) {
+void PrintRatios(const std::string& title, const std::vector<PlanRow>& rows, const Lights& lights) {
   if (lights.empty()) return;
   std::printf("\n== %s: %d lights\n", title.c_str(), static_cast<int>(lights.size()));
-  std::printf("%-20s %-16s %-16s %-12s %-12s %-7s %s\n",
+  std::printf("%-24s %-16s %-16s %-12s %-12s %-12s %-6s %-8s %-6s %s\n",
               "over one map:",
               "ideal, worst",
               "practical",
-              "energy",
+              "/one chosen",
               "/published",
+              "/ZP4+LiSPSM",
               "maps",
+              "overlap",
+              "draws",
               "time in fits");
   for (size_t row = 0; row < rows.size(); ++row) {
-    double seconds = 0.0, seconds_of_one = 0.0, num_maps = 0.0;
+    double seconds = 0.0, seconds_of_one = 0.0, num_maps = 0.0, overlap = 0.0, draws = 0.0;
+    int count = 0;
     for (const LightRow* light : lights) {
-      seconds += light->rows[row].seconds;
+      const Measured& measured = light->rows[row];
+      if (!measured.is_there) continue;
+      ++count;
+      seconds += measured.seconds;
       seconds_of_one += light->rows[0].seconds;
-      num_maps += light->rows[row].num_maps;
+      num_maps += measured.num_maps;
+      overlap += measured.overlap;
+      draws += measured.draws;
     }
-    std::printf("%-20s %-16s %-16s %-12s %-12s %-7.1f %.1f\n",
+    if (count == 0) continue;
+    std::printf("%-24s %-16s %-16s %-12s %-12s %-12s %-6.1f %-8.2f %-6.2f %.1f\n",
                 rows[row].name.c_str(),
-                RatioText(lights, row, 0, &Measured::ideal, true).c_str(),
-                RatioText(lights, row, 0, &Measured::practical, false).c_str(),
-                RatioText(lights, row, 0, &Measured::energy, false).c_str(),
-                RatioText(lights, row, 3, &Measured::ideal, false).c_str(),
-                num_maps / static_cast<double>(lights.size()),
+                RatioText(lights, row, kOneMap, &Measured::ideal, true).c_str(),
+                RatioText(lights, row, kOneMap, &Measured::practical, false).c_str(),
+                RatioText(lights, row, kOneChosen, &Measured::ideal, false).c_str(),
+                RatioText(lights, row, kAsPublishedMap, &Measured::ideal, false).c_str(),
+                RatioText(lights, row, kZp4, &Measured::ideal, false).c_str(),
+                num_maps / count,
+                overlap / count,
+                draws / count,
                 seconds / seconds_of_one);
   }
 }
 
-void Print(const std::vector<Row>& rows, const std::vector<LightRow>& lights) {
+// How many lights a row has more than `factor` times the wrong pixels of another on.
+int NumBehind(const Lights& lights, size_t row, size_t other, double factor) {
+  return static_cast<int>(std::count_if(lights.begin(), lights.end(), [&](const LightRow* light) {
+    const Measured& measured = light->rows[row];
+    const Measured& reference = light->rows[other];
+    return measured.is_there && reference.is_there &&
+           measured.ideal > factor * reference.ideal + 1.0;
+  }));
+}
+
+// On how many lights plans of several maps are behind others.
+void PrintBehind(const std::vector<PlanRow>& rows, const Lights& lights) {
+  std::printf("\n== lights of %d on which a row has more wrong pixels than ...\n",
+              static_cast<int>(lights.size()));
+  std::printf("%-24s %-18s", "", "1.1 ZP4+LiSPSM");
+  for (const PlanRow& row : rows) {
+    if (row.kind == PlanRow::Kind::kPublished) std::printf(" %s", row.name.c_str());
+  }
+  std::printf("\n");
+  for (size_t row = 0; row < rows.size(); ++row) {
+    if (rows[row].kind != PlanRow::Kind::kOurs) continue;
+    std::printf("%-24s %-18d", rows[row].name.c_str(), NumBehind(lights, row, kZp4, 1.1));
+    for (size_t other = 0; other < rows.size(); ++other) {
+      if (rows[other].kind != PlanRow::Kind::kPublished) continue;
+      std::printf(
+          " %*d", static_cast<int>(rows[other].name.size()), NumBehind(lights, row, other, 1.0));
+    }
+    std::printf("\n");
+  }
+}
+
+void Print(const std::vector<PlanRow>& rows, const std::vector<LightRow>& lights) {
   Lights all, indoors;
   for (size_t begin = 0; begin < lights.size();) {
     Lights of_scene;
@@ -317,18 +300,20 @@ void Print(const std::vector<Row>& rows, const std::vector<LightRow>& lights) {
   }
   PrintRatios("indoors", rows, indoors);
   PrintRatios("all", rows, all);
+  PrintBehind(rows, all);
 }
 
 absl::Status WriteCsv(const std::string& path,
-                      const std::vector<Row>& rows,
+                      const std::vector<PlanRow>& rows,
                       const std::vector<LightRow>& lights) {
-  std::string text = "scene,light,row,maps,ideal,practical,outside,energy,foretold,seconds\n";
+  std::string text =
+      "scene,light,row,maps,ideal,practical,outside,overlap,draws,foretold,seconds\n";
   for (const LightRow& light : lights) {
     for (size_t row = 0; row < rows.size(); ++row) {
       const Measured& measured = light.rows[row];
       if (!measured.is_there) continue;
       absl::StrAppendFormat(&text,
-                            "%s,%s,\"%s\",%d,%g,%g,%g,%g,%g,%g\n",
+                            "%s,%s,\"%s\",%d,%g,%g,%g,%g,%g,%g,%g\n",
                             light.scene,
                             light.light,
                             rows[row].name,
@@ -336,7 +321,8 @@ absl::Status WriteCsv(const std::string& path,
                             measured.ideal,
                             measured.practical,
                             measured.outside,
-                            measured.energy,
+                            measured.overlap,
+                            measured.draws,
                             measured.foretold,
                             measured.seconds);
     }
@@ -345,7 +331,8 @@ absl::Status WriteCsv(const std::string& path,
 }
 
 absl::Status Run(const Arguments& arguments) {
-  const std::vector<Row> rows = MakeRows(arguments);
+  const std::vector<PlanRow> rows =
+      MakePlanRows(arguments.num_maps, arguments.readback, arguments.large_readback);
   std::vector<LightRow> lights;
   std::string names;
   for (const SceneCase& scene : SceneCases()) absl::StrAppend(&names, " ", scene.name);

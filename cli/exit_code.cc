@@ -15,7 +15,10 @@ std::string WithFlags(absl::string_view message) {
   return absl::StrReplaceAll(message,
                              {{"options.search = kFocused", "--search focused"},
                               {"options.cover = kReceivers", "--cover receivers"},
-                              {"options.metric = kL2", "--metric l2"}});
+                              {"options.metric = kL2", "--metric l2"},
+                              {"options.max_maps = ", "--maps "},
+                              {"options.texels = ", "--texels "},
+                              {"options.guard_texels = ", "--guard "}});
 }
 
 }  // namespace

@@ -4,16 +4,19 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "base/output_file.h"
 #include "base/progress.h"
 #include "cli/exit_code.h"
 #include "cli/fit_summary.h"
 #include "cli/flags/fit_inputs.h"
 #include "cli/reports/fit_report.h"
+#include "cli/reports/plan_report.h"
 #include "jobs/fit_comparison.h"
 #include "picture/fit_page.h"
 #include "picture/png.h"
@@ -35,8 +38,8 @@ absl::Status CheckOutputs(const FitFlags& flags) {
 
 void WarnAboutPixels(const std::vector<FitComparison>& comparisons) {
   for (const FitComparison& comparison : comparisons) {
-    if (!comparison.final.ok()) continue;
-    const int64_t num_invalid = comparison.final->matrix.figures.samples.invalid_depth;
+    if (!comparison.ok()) continue;
+    const int64_t num_invalid = comparison.samples().invalid_depth;
     if (num_invalid > 0) {
       PrintWarning(absl::StrCat(num_invalid,
                                 num_invalid == 1 ? " pixel" : " pixels",
@@ -49,8 +52,11 @@ void WarnAboutPixels(const std::vector<FitComparison>& comparisons) {
 // What is no error, but less than was asked for.
 void PrintNotes(const std::vector<FitComparison>& comparisons, const FitOptions& options) {
   for (const FitComparison& comparison : comparisons) {
-    if (!comparison.final.ok()) continue;
-    const std::string text = FocusedInsteadText(comparison.final->matrix, options);
+    if (!comparison.ok()) continue;
+    if (comparison.plan.has_value() && (*comparison.plan)->plan.maps.size() > 1) continue;
+    const std::string text = FocusedInsteadText(
+        comparison.plan.has_value() ? (*comparison.plan)->plan.maps[0] : comparison.final->matrix,
+        options);
     if (!text.empty()) PrintWarning(text);
   }
 }
@@ -59,11 +65,31 @@ void PrintNotes(const std::vector<FitComparison>& comparisons, const FitOptions&
 int PrintFailedLights(const std::vector<FitComparison>& comparisons) {
   int num_failed = 0;
   for (const FitComparison& comparison : comparisons) {
-    if (comparison.final.ok()) continue;
+    if (comparison.ok()) continue;
     ++num_failed;
-    PrintFailedLight("matrix", comparison.light.name, comparison.final.status());
+    PrintFailedLight("matrix", comparison.light.name, comparison.status());
   }
   return num_failed;
+}
+
+LightFit LightFitOf(const FitComparison& comparison, double guard_texels) {
+  LightFit fit;
+  fit.light = comparison.light;
+  if (!comparison.ok()) {
+    fit.matrix = comparison.status();
+  } else if (comparison.plan.has_value()) {
+    const JudgedPlan& judged = **comparison.plan;
+    fit.plan = PlanFit{judged.plan, judged.own_figures, guard_texels};
+    fit.matrix = judged.plan.maps[0];  // the answer where it is the only one
+    fit.wrong_share = judged.own_figures.wrong_share;
+    if (comparison.final.ok()) fit.one_map = comparison.final->own_figures;
+  } else {
+    fit.matrix = comparison.final->matrix;
+    fit.wrong_share = comparison.final->own_figures.wrong_share;
+  }
+  if (comparison.focused.ok()) fit.focused = comparison.focused->own_figures;
+  if (comparison.published.ok()) fit.as_published = comparison.published->own_figures;
+  return fit;
 }
 
 FitReport JsonReport(const FitFlags& flags,
@@ -75,20 +101,11 @@ FitReport JsonReport(const FitFlags& flags,
   report.camera = file.camera;
   report.depth_kind = file.depth_kind;
   report.options = options;
+  report.plan_options = PlanOptionsOf(flags);
   report.map = flags.map;
   report.clip = flags.clip;
   for (const FitComparison& comparison : comparisons) {
-    LightFit fit;
-    fit.light = comparison.light;
-    if (!comparison.final.ok()) {
-      fit.matrix = comparison.final.status();
-    } else {
-      fit.matrix = comparison.final->matrix;
-      fit.wrong_share = comparison.final->own_figures.wrong_share;
-    }
-    if (comparison.focused.ok()) fit.focused = comparison.focused->own_figures;
-    if (comparison.published.ok()) fit.as_published = comparison.published->own_figures;
-    report.lights.push_back(std::move(fit));
+    report.lights.push_back(LightFitOf(comparison, flags.plan.guard_texels));
   }
   return report;
 }
@@ -118,26 +135,33 @@ Outcome FitAndDraw(const FitFlags& flags, const FitOptions& options, const FitIn
   }
   Progress progress(static_cast<int>(inputs.lights.size()) + (draws ? 1 : 0), flags.quiet);
   bool is_first = true;
-  ComparedReadback compared = CompareLights(inputs.View(),
-                                            inputs.lights,
-                                            inputs.file.light_status,
-                                            flags.map,
-                                            options,
-                                            [&](const Light& light) {
-                                              if (!is_first) progress.Advance();
-                                              is_first = false;
-                                              progress.Begin(absl::StrCat("fitting ", light.name));
-                                            });
+  const auto before_light = [&](const Light& light) {
+    if (!is_first) progress.Advance();
+    is_first = false;
+    progress.Begin(absl::StrCat("fitting ", light.name));
+  };
+  const std::optional<PlanOptions> plan = PlanOptionsOf(flags);
+  const std::vector<absl::Status>& light_status = inputs.file.light_status;
+  ComparedReadback compared =
+      plan.has_value()
+          ? CompareLights(inputs.View(), inputs.lights, light_status, *plan, before_light)
+          : CompareLights(
+                inputs.View(), inputs.lights, light_status, flags.map, options, before_light);
   progress.Advance();
   Outcome outcome = {std::move(compared.comparisons)};
   if (draws) {
     progress.Begin("drawing");
     const PictureOptions picture = {
-        TitleOf(flags.readback_path), options.samples, ShortMethodText(options)};
-    outcome.picture =
-        compared.surfaces.ok()
-            ? DrawPicture(*compared.surfaces, outcome.comparisons, flags.map, picture, typeface)
-            : compared.surfaces.status();
+        TitleOf(flags.readback_path),
+        plan.has_value()
+            ? PlanSizeText(*plan)
+            : absl::StrFormat("shadow map %d x %d texels", flags.map.width, flags.map.height),
+        options.samples,
+        ShortMethodText(options),
+        flags.plan.guard_texels};
+    outcome.picture = compared.surfaces.ok()
+                          ? DrawPicture(*compared.surfaces, outcome.comparisons, picture, typeface)
+                          : compared.surfaces.status();
   }
   return outcome;
 }
@@ -167,7 +191,8 @@ std::function<int()> DeclareFit(CLI::App* app) {
 int RunFit(const FitFlags& flags) {
   const FitOptions options =
       flags.as_published ? FitOptions::AsPublished(flags.options) : flags.options;
-  absl::Status status = ValidateFitOptions(options);
+  const std::optional<PlanOptions> plan = PlanOptionsOf(flags);
+  absl::Status status = plan.has_value() ? ValidatePlanOptions(*plan) : ValidateFitOptions(options);
   if (!status.ok()) return Fail(kExitUsage, status);
   status = CheckOutputs(flags);
   if (!status.ok()) return Fail(kExitBadInput, status);
@@ -176,8 +201,11 @@ int RunFit(const FitFlags& flags) {
 
   const Outcome outcome = FitAndDraw(flags, options, *inputs);
   if (!flags.quiet) {
+    const Readback readback = inputs->View();
     const std::string text =
-        FitReportText(flags.readback_path, inputs->View(), flags.map, options, outcome.comparisons);
+        plan.has_value()
+            ? PlanReportText(flags.readback_path, readback, *plan, outcome.comparisons)
+            : FitReportText(flags.readback_path, readback, flags.map, options, outcome.comparisons);
     std::fputs(text.c_str(), stdout);
     std::fflush(stdout);
   }

@@ -24,6 +24,7 @@
 #include "cli/summary_inputs.h"
 #include "jobs/fit_summary.h"
 #include "optimizer/fit.h"
+#include "wire/plan_proto.h"
 #include "wire/result_json.h"
 
 namespace lightfit::cli {
@@ -50,6 +51,7 @@ absl::StatusOr<MatricesByLight> ReadMatrices(const std::string& path) {
   if (!result.ok()) return result.status();
   MatricesByLight matrices;
   for (const v1::LightResult& light : result->lights()) {
+    if (absl::Status status = CheckHasOneMap(light); !status.ok()) return InFile(path, status);
     matrices[light.name()] = light.has_map_from_world()
                                  ? MatrixFromProto(light.map_from_world(), "map_from_world")
                                  : absl::FailedPreconditionError(light.status().message());

@@ -8,10 +8,10 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(LIGHTFIT_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/lightfit)
 
-install(TARGETS lightfit_base lightfit_geometry lightfit_optimizer EXPORT lightfitTargets
+install(TARGETS lightfit_base lightfit_geometry lightfit_optimizer lightfit_partition EXPORT lightfitTargets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 # Headers include each other as "lightfit/geometry/light.h" once they are installed, so that an
-# engine's include path gains one name and not `base/`, `geometry/` and `optimizer/`.
+# engine's include path gains one name and not `base/`, `geometry/`, `optimizer/` and `partition/`.
 install(CODE "
   set(from [[${PROJECT_SOURCE_DIR}]])
   set(to \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR}/lightfit\")

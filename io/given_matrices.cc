@@ -12,6 +12,7 @@
 #include "geometry/map_size.h"
 #include "lightfit/v1/result.pb.h"
 #include "wire/matrix_proto.h"
+#include "wire/plan_proto.h"
 #include "wire/proto_json.h"
 
 namespace lightfit {
@@ -142,6 +143,7 @@ absl::StatusOr<std::map<std::string, GivenMatrix>> MatricesOfResult(absl::string
   if (absl::Status status = JsonToProto(json, result); !status.ok()) return status;
   std::map<std::string, GivenMatrix> matrices;
   for (const v1::LightResult& light : result.lights()) {
+    if (absl::Status status = CheckHasOneMap(light); !status.ok()) return status;
     if (light.status().code() != 0 || !light.has_map_from_world()) continue;
     const std::string of_light = absl::StrCat("light \"", light.name(), "\": ");
     const absl::StatusOr<Eigen::Matrix4d> matrix =

@@ -6,6 +6,7 @@
 //         {"clip_from_world": M, "clip": "direct3d"}                      a renderer's
 //       with M as 16 numbers, as 4 rows of 4, or as {"m": [16 numbers]}; row-major, column vectors;
 //       and "border": "dark" where look-ups outside the map find shadow, else they find light.
+//       Plans of several maps are refused.
 // Out:  GivenMatrices, in the texels of the map that they are to be compared in.
 #pragma once
 

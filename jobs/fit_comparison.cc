@@ -1,85 +1,91 @@
 #include "jobs/fit_comparison.h"
 
+#include <algorithm>
 #include <chrono>
-#include <optional>
+#include <cmath>
 #include <utility>
 
-#include "optimizer/evaluate.h"
+#include "absl/strings/str_format.h"
 #include "optimizer/fit.h"
+#include "partition/fit_plan.h"
 
 namespace lightfit {
 
 namespace {
 
-// Judges matrices of one light, whatever their borders, over the edges that a map with this one
-// serves.
-class Judge {
- public:
-  static absl::StatusOr<Judge> Of(const Surfaces& surfaces,
-                                  const Light& light,
-                                  Border border,
-                                  const FitOptions& options) {
-    Judge judge;
-    judge.options_ = FigureOptions(options);
-    judge.own_options_ = judge.options_;
-    judge.own_options_.samples = options.samples;
-    absl::StatusOr<LightView> view = ViewLight(surfaces, light, border, judge.options_);
-    if (!view.ok()) return view.status();
-    judge.view_ = *std::move(view);
-    if (options.samples == judge.options_.samples) return judge;
-    view = ViewLight(surfaces, light, border, judge.own_options_);
-    if (!view.ok()) return view.status();
-    judge.own_view_ = *std::move(view);
-    return judge;
+double MillisecondsSince(std::chrono::steady_clock::time_point start) {
+  const auto now = std::chrono::steady_clock::now();
+  return std::chrono::duration<double, std::milli>(now - start).count();
+}
+
+// How many maps a light takes that has no single one; 0: there is no plan either.
+int NumMapsThatDo(const Surfaces& surfaces,
+                  const Light& light,
+                  MapSize map,
+                  const FitOptions& options) {
+  // Any rays at all have a plan of so many: one for each face of a cube.
+  constexpr int kAlwaysEnough = 6;
+  PlanOptions plan_options;
+  plan_options.fit = options;
+  plan_options.texels = int64_t{map.width} * map.height;
+  plan_options.choose_by_forecast = false;
+  for (int num_maps = 2; num_maps <= kAlwaysEnough; ++num_maps) {
+    plan_options.max_maps = num_maps;
+    const absl::StatusOr<LightPlan> plan = FitPlan(surfaces, light, plan_options);
+    if (plan.ok()) return static_cast<int>(plan->maps.size());
+    if (!absl::IsFailedPrecondition(plan.status())) return 0;
   }
+  return 0;
+}
 
-  absl::StatusOr<JudgedMatrix> operator()(absl::StatusOr<LightMatrix> matrix) const {
-    if (!matrix.ok()) return matrix.status();
-    absl::StatusOr<Figures> figures =
-        EvaluateMatrix(*view_, matrix->map_from_world, matrix->map, options_, matrix->border);
-    if (!figures.ok()) return figures.status();
-    absl::StatusOr<Figures> own = figures;
-    if (own_view_.has_value()) {
-      own = EvaluateMatrix(
-          *own_view_, matrix->map_from_world, matrix->map, own_options_, matrix->border);
-    }
-    if (!own.ok()) return own.status();
-    return JudgedMatrix{*std::move(matrix), *std::move(figures), *std::move(own)};
+// The error of a light that has no single map, with what to do about it.
+absl::Status WithNumMaps(const absl::Status& status,
+                         const Surfaces& surfaces,
+                         const Light& light,
+                         MapSize map,
+                         const FitOptions& options) {
+  if (!absl::IsFailedPrecondition(status) || light.kind != Light::Kind::kPoint) return status;
+  const int num_maps = NumMapsThatDo(surfaces, light, map, options);
+  if (num_maps == 0) return status;
+  return absl::FailedPreconditionError(
+      absl::StrFormat("%s. A plan of %d maps (options.max_maps = %d) would do",
+                      status.message(),
+                      num_maps,
+                      num_maps));
+}
+
+// Of each light what `compare` says, unless it could not be read.
+template <typename Compare>
+ComparedReadback CompareEach(const Readback& readback,
+                             absl::Span<const Light> lights,
+                             absl::Span<const absl::Status> light_status,
+                             const SampleOptions& samples,
+                             const std::function<void(const Light&)>& before_light,
+                             const Compare& compare) {
+  ComparedReadback result = {FindSurfaces(readback, LightMask(lights), samples), {}};
+  for (size_t i = 0; i < lights.size(); ++i) {
+    before_light(lights[i]);
+    const absl::Status& status = light_status[i].ok() ? result.surfaces.status() : light_status[i];
+    result.comparisons.push_back(status.ok() ? compare(*result.surfaces, lights[i])
+                                             : FailedFitComparison(lights[i], status));
   }
-
- private:
-  FitOptions options_, own_options_;
-  std::optional<LightView> view_;
-  std::optional<LightView> own_view_;  // absent: the same
-};
-
-// What the surfaces of a read-back were found with must be the same for all who ask of them.
-SampleOptions OnTheSameSurfaces(SampleOptions samples, const FitOptions& options) {
-  samples.max_depth_bend = options.samples.max_depth_bend;
-  samples.depth_noise = options.samples.depth_noise;
-  return samples;
+  return result;
 }
 
 }  // namespace
-
-FitOptions FigureOptions(const FitOptions& options) {
-  FitOptions figures = options;
-  figures.samples = OnTheSameSurfaces(SampleOptions(), options);
-  figures.cover = Cover::kShadowed;
-  figures.border = BorderChoice::kAutomatic;  // whichever the view is made for
-  return figures;
-}
 
 FitComparison CompareFit(const Surfaces& surfaces,
                          const Light& light,
                          MapSize map,
                          const FitOptions& options) {
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point start = Clock::now();
+  const auto start = std::chrono::steady_clock::now();
   absl::StatusOr<LightMatrix> final = FitLight(surfaces, light, map, options);
-  const double time_ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-  if (!final.ok()) return FailedFitComparison(light, final.status());
-  const absl::StatusOr<Judge> judge = Judge::Of(surfaces, light, final->border, options);
+  const double time_ms = MillisecondsSince(start);
+  if (!final.ok()) {
+    return FailedFitComparison(light, WithNumMaps(final.status(), surfaces, light, map, options));
+  }
+  const absl::StatusOr<MatrixJudge> judge =
+      MatrixJudge::Of(surfaces, light, final->border, options);
   if (!judge.ok()) return FailedFitComparison(light, judge.status());
   return {light,
           (*judge)(FitLight(surfaces, light, map, FitOptions::Focused(options))),
@@ -88,20 +94,63 @@ FitComparison CompareFit(const Surfaces& surfaces,
           time_ms};
 }
 
+FitComparison ComparePlan(const Surfaces& surfaces,
+                          const Light& light,
+                          const PlanOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  absl::StatusOr<LightPlan> plan = FitPlan(surfaces, light, options);
+  const double time_ms = MillisecondsSince(start);
+  if (!plan.ok()) return FailedFitComparison(light, plan.status());
+  const absl::StatusOr<MatrixJudge> judge =
+      MatrixJudge::Of(surfaces, light, plan->border, options.fit);
+  if (!judge.ok()) return FailedFitComparison(light, judge.status());
+  const MapSize map = OneMapSize(options);
+  return {light,
+          (*judge)(FitLight(surfaces, light, map, FitOptions::Focused(options.fit))),
+          (*judge)(FitLight(surfaces, light, map, FitOptions::AsPublished(options.fit))),
+          (*judge)(FitLight(surfaces, light, map, options.fit)),
+          time_ms,
+          (*judge)(*std::move(plan), options.guard_texels)};
+}
+
+MapSize OneMapSize(const PlanOptions& options) {
+  double texels = static_cast<double>(options.texels);
+  if (options.each.has_value()) {
+    texels = static_cast<double>(options.each->width) * options.each->height * options.max_maps;
+  }
+  const int side = std::min(static_cast<int>(std::sqrt(texels)), kMaxMapSide);
+  return {side, side};
+}
+
 ComparedReadback CompareLights(const Readback& readback,
                                absl::Span<const Light> lights,
                                absl::Span<const absl::Status> light_status,
                                MapSize map,
                                const FitOptions& options,
                                const std::function<void(const Light&)>& before_light) {
-  ComparedReadback result = {FindSurfaces(readback, LightMask(lights), options.samples), {}};
-  for (size_t i = 0; i < lights.size(); ++i) {
-    before_light(lights[i]);
-    const absl::Status& status = light_status[i].ok() ? result.surfaces.status() : light_status[i];
-    result.comparisons.push_back(status.ok() ? CompareFit(*result.surfaces, lights[i], map, options)
-                                             : FailedFitComparison(lights[i], status));
-  }
-  return result;
+  return CompareEach(readback,
+                     lights,
+                     light_status,
+                     options.samples,
+                     before_light,
+                     [&](const Surfaces& surfaces, const Light& light) {
+                       return CompareFit(surfaces, light, map, options);
+                     });
+}
+
+ComparedReadback CompareLights(const Readback& readback,
+                               absl::Span<const Light> lights,
+                               absl::Span<const absl::Status> light_status,
+                               const PlanOptions& options,
+                               const std::function<void(const Light&)>& before_light) {
+  return CompareEach(readback,
+                     lights,
+                     light_status,
+                     options.fit.samples,
+                     before_light,
+                     [&](const Surfaces& surfaces, const Light& light) {
+                       return ComparePlan(surfaces, light, options);
+                     });
 }
 
 FitComparison FailedFitComparison(const Light& light, const absl::Status& status) {

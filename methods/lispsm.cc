@@ -1,6 +1,8 @@
 #include "methods/lispsm.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "absl/strings/str_format.h"
@@ -29,30 +31,49 @@ absl::Status ValidateOptions(const LispsmOptions& options) {
   return absl::OkStatus();
 }
 
-// Mean depth in front of the light of the body's corners that are nearest to the camera, so that
-// the four corners of a near plane count alike. 1 for a directional light.
-double LightDepthOfNearest(const LightBody& body, const Camera& camera, double nearest) {
-  constexpr double kSameDepth = 1e-6;
+// Where the body begins along the warp.
+struct BodyStart {
+  double camera_depth = std::numeric_limits<double>::infinity();
+  double light_depth = 0.0;  // 1 for a directional light
+};
+
+// Of corners that begin it together those nearest to the camera count, and count alike: the four of
+// a near plane that the light sees edge-on.
+BodyStart StartOf(const LightBody& body, const ViewFrame& frame, const Camera& camera) {
+  constexpr double kSamePlace = 1e-6, kSameDepth = 1e-6;
+  const auto along = [&](const Eigen::Vector3d& ray) { return frame.along.dot(ray) / ray.z(); };
+  double least = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector3d& ray : body.rays) least = std::min(least, along(ray));
+  BodyStart start;
   double sum = 0.0;
   int count = 0;
   for (size_t i = 0; i < body.points.size(); ++i) {
-    if (CameraDepth(camera, body.points[i]) > nearest * (1.0 + kSameDepth)) continue;
+    if (along(body.rays[i]) > least + kSamePlace * frame.length) continue;
+    const double depth = CameraDepth(camera, body.points[i]);
+    if (depth > start.camera_depth * (1.0 + kSameDepth)) continue;
+    if (depth < start.camera_depth * (1.0 - kSameDepth)) {
+      start.camera_depth = depth;
+      sum = 0.0;
+      count = 0;
+    }
     sum += body.rays[i].z();
     ++count;
   }
-  return sum / count;
+  start.light_depth = sum / count;
+  return start;
 }
 
 double DistanceN(const LightBody& body,
                  const ViewFrame& frame,
                  const Camera& camera,
                  LispsmOptions::Formula formula) {
-  const double z0 = ViewDepthsOf(camera, body.points).least;
-  const double slope = frame.depth_slope * LightDepthOfNearest(body, camera, z0);
+  const BodyStart start = StartOf(body, frame, camera);
+  const double slope = frame.depth_slope * start.light_depth;
   if (formula == LispsmOptions::Formula::kSimple) {
     return (camera.near + std::sqrt(camera.near * camera.far)) / slope;
   }
-  return (z0 + std::sqrt(z0 * (z0 + slope * frame.length))) / slope;
+  const double z0 = start.camera_depth, z1 = z0 + slope * frame.length;
+  return (z0 + std::sqrt(z0 * z1)) / slope;
 }
 
 }  // namespace

@@ -10,13 +10,18 @@
 // make (n + b)^2 / z equal at both ends, z0 and z1 the camera depths there:
 //
 //   general:  n = (z0 + sqrt(z0 z1)) / sin(angle between light and view),  z1 = z0 + sin(angle) d,
-//             z0 where the body begins in depth, d the body's length along b;
+//             z0 at the corner where the body begins along b, d the body's length along b;
 //   simple:   n = (near + sqrt(near far)) / sin(angle), with the camera's clip planes.
+//
+// The body need not begin along b at its nearest corner. For a light within the cone of the view it
+// is a corner of the far plane, and the nearest depth in its place would warp the map much too far:
+// twelve times the texels that a light straight behind the viewer needs, instead of about two, for
+// far = 1000 near. The authors' program takes the nearest corner's.
 //
 // n grows without bound as the light aligns with the view, and the map turns into the focused one
 // with its sides along the view. A point light is set up in the image plane of its frustum (the
 // paper's post-perspective light space): the slope of camera depth along b is taken at the light
-// depth of the body's nearest corners.
+// depth of the corner where the body begins.
 //
 // Edge cases: light along the view, or an orthographic view (whose pixels do not shrink with
 // depth): the focused map, and the note says so.

@@ -50,6 +50,20 @@ void SetAspect(double aspect, CellMap* map) {
   map->height = kCellTexels / map->width;
 }
 
+// One pixel or a row of them, seen edge-on: with a little area around it.
+Polygon Thickened(const Polygon& points) {
+  constexpr double kShare = 0.01, kLeast = 1e-3;  // of the length; of the distance
+  const Eigen::Vector2d along = points.back() - points.front();
+  const double reach = std::max(kShare * along.norm(), kLeast * (1.0 + points.front().norm()));
+  ScratchVector<Eigen::Vector2d> corners;
+  for (const Eigen::Vector2d& point : points) {
+    for (const double dx : {-reach, reach}) {
+      for (const double dy : {-reach, reach}) corners.push_back(point + Eigen::Vector2d(dx, dy));
+    }
+  }
+  return ConvexHull(corners);
+}
+
 }  // namespace
 
 MapExtents::MapExtents(const Eigen::Matrix3d& map_from_ray) : axis_(map_from_ray.row(2)) {
@@ -82,8 +96,13 @@ std::optional<CellCover> CoverBins(const ServedRays& rays, Bins bins, const Ligh
   }
   CellCover cover;
   cover.hull = builder.Hull();
-  if (cover.hull.size() < 3) return std::nullopt;
-  const std::optional<Eigen::Matrix3d> normalized = NormalizeRays(frame, &cover.hull);
+  if (cover.hull.empty()) return std::nullopt;
+  std::optional<Eigen::Matrix3d> normalized;
+  if (cover.hull.size() >= 3) normalized = NormalizeRays(frame, &cover.hull);
+  if (!normalized.has_value()) {
+    cover.hull = Thickened(cover.hull);
+    normalized = NormalizeRays(frame, &cover.hull);
+  }
   if (!normalized.has_value()) return std::nullopt;
   cover.normalized_from_ray = *normalized;
   return cover;

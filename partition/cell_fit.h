@@ -43,7 +43,8 @@ struct CellCover {
 
 using Bins = absl::Span<const int>;  // indices in ServedRays::bins
 
-// Nothing where the bins cover nothing, or nothing that has area, or rays all around a lamp.
+// With a little area where the rays have none. Nothing where the bins cover nothing, or rays all
+// around a lamp.
 std::optional<CellCover> CoverBins(const ServedRays& rays, Bins bins, const Light& light);
 
 // Weights and sums of squares over samples, under the weights that they have in one map.

@@ -32,15 +32,26 @@ struct MapOfCell {
   CoverOfCell cover;
 };
 
-ScratchVector<MapOfCell> MapsOfCells(const CellFitter& fitter,
-                                     const Cells& cells,
-                                     const PlanOptions& options) {
+absl::StatusOr<ScratchVector<MapOfCell>> MapsOfCells(const CellFitter& fitter,
+                                                     const Cells& cells,
+                                                     const PlanOptions& options) {
   const ScratchVector<double> texels =
       DivideTexels(fitter, cells, static_cast<double>(options.texels));
   const double margin_texels = options.guard_texels + options.fit.margin_texels;
   ScratchVector<MapOfCell> maps;
   for (size_t k = 0; k < cells.size(); ++k) {
     const MapSize size = options.each.value_or(WholeSize(cells[k].map, texels[k]));
+    if (!(2.0 * margin_texels < std::min(size.width, size.height))) {
+      return absl::FailedPreconditionError(
+          absl::StrFormat("light \"%s\": options.guard_texels = %g leave nothing of a map of "
+                          "%dx%d texels, one of "
+                          "%d; want fewer maps or more texels",
+                          fitter.light().name,
+                          options.guard_texels,
+                          size.width,
+                          size.height,
+                          cells.size()));
+    }
     const std::optional<Eigen::Matrix3d> map_from_ray =
         fitter.MapOfSize(cells[k].bins, cells[k].map, size, margin_texels);
     const std::optional<CoverOfCell> cover =
@@ -61,7 +72,9 @@ absl::StatusOr<LightPlan> FinishPlan(const LightView& view,
   plan.light_name = view.light->name;
   plan.border = view.border;
   plan.facing = view.facing();
-  const ScratchVector<MapOfCell> maps = MapsOfCells(fitter, cells, options);
+  const absl::StatusOr<ScratchVector<MapOfCell>> found = MapsOfCells(fitter, cells, options);
+  if (!found.ok()) return found.status();
+  const ScratchVector<MapOfCell>& maps = *found;
   ScratchVector<RayMap> ray_maps;
   for (const MapOfCell& map : maps) {
     ray_maps.push_back(RayMap(map.map_from_ray, map.size.width, map.size.height));

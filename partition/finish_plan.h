@@ -23,8 +23,8 @@
 
 namespace lightfit {
 
-// FailedPrecondition when the texels are too few for any map; CancelledError once a StopScope says
-// so.
+// FailedPrecondition when the texels are too few for any map, or the guard leaves nothing of one;
+// CancelledError once a StopScope says so.
 absl::StatusOr<LightPlan> FinishPlan(const LightView& view,
                                      const CellFitter& fitter,
                                      const Cells& cells,

@@ -220,8 +220,7 @@ absl::StatusOr<LightPlan> FitPlan(const Surfaces& surfaces,
   absl::StatusOr<LightPlan> last = FitInBorder(surfaces, light, first, options, &choice);
   if (absl::IsCancelled(last.status())) return last;
   if (border == BorderChoice::kAutomatic) {
-    const absl::StatusOr<LightPlan> dark =
-        FitInBorder(surfaces, light, Border::kDark, options, &choice);
+    absl::StatusOr<LightPlan> dark = FitInBorder(surfaces, light, Border::kDark, options, &choice);
     if (absl::IsCancelled(dark.status())) return dark;
   }
   if (choice.is_empty()) return last;

@@ -15,6 +15,7 @@ namespace {
 
 constexpr int kNumStarts = 8;
 constexpr int kMaxRounds = 30;
+constexpr int kFacesOfACube = 6;
 
 // The centre that a direction is closest to.
 int ClosestTo(const ScratchVector<Eigen::Vector3d>& centres, const Eigen::Vector3d& direction) {
@@ -105,7 +106,16 @@ Cells ClusterCells(const CellFitter& fitter, int num_cells, double texels) {
     const double energy = DividedMaps(fitter, cells, texels).Energy();
     best.Offer(energy, std::move(cells));
   }
-  return std::move(best).Best();
+  Cells cells = std::move(best).Best();
+  if (cells.empty() && num_cells >= kFacesOfACube && !StopRequested()) {
+    ScratchVector<Eigen::Vector3d> faces;
+    for (int axis = 0; axis < 3; ++axis) {
+      faces.push_back(Eigen::Vector3d::Unit(axis));
+      faces.push_back(-Eigen::Vector3d::Unit(axis));
+    }
+    cells = CellsAround(fitter, std::move(faces));
+  }
+  return cells;
 }
 
 }  // namespace lightfit

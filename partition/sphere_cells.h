@@ -13,7 +13,8 @@
 namespace lightfit {
 
 // None where no start gives `num_cells` cells, or fewer, that all have maps: rays on a whole sphere
-// need four at least. Of no use once a StopScope says so.
+// need four at least. Of six there always are some, at worst a cube's faces. Of no use once a
+// StopScope says so.
 Cells ClusterCells(const CellFitter& fitter, int num_cells, double texels);
 
 }  // namespace lightfit

@@ -5,8 +5,9 @@
 // Out:  a Canvas, ready for WritePng().
 //
 // One row per light: the read-back coloured by the footprint of the focused map and of the fitted
-// one, on one scale, then both maps with what lands in them. A light without
-// a matrix has its message instead.
+// one, on one scale, then both maps with what lands in them. Of a plan: by that of the single map
+// and of the plan, then which pixel asks which map, and what lands in each. A light without a
+// matrix has its message instead.
 #pragma once
 
 #include <string>
@@ -21,14 +22,15 @@
 namespace lightfit {
 
 struct PictureOptions {
-  std::string title;        // usually the read-back's file name
-  SampleOptions samples;    // as used by the fit
-  std::string final_label;  // what "after" is, for the panel titles: "lightfit", "as published"
+  std::string title;          // usually the read-back's file name
+  std::string maps;           // their sizes: "shadow map 1024 x 1024 texels"
+  SampleOptions samples;      // as used by the fit
+  std::string final_label;    // what "after" is, for the panel titles: "lightfit", "as published"
+  double guard_texels = 0.0;  // of plans
 };
 
 absl::StatusOr<Canvas> DrawPicture(const Surfaces& surfaces,
                                    const std::vector<FitComparison>& lights,
-                                   MapSize map,
                                    const PictureOptions& options,
                                    const Typeface& typeface);
 

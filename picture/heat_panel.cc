@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "geometry/affine_depth.h"
 #include "geometry/camera.h"
@@ -77,12 +78,22 @@ Image DrawHeatPanel(const Readback& readback,
   Image image(width, readback.height(), kPanelColor);
   for (size_t pixel = 0; pixel < footprints.size(); ++pixel) {
     if (!depth.IsSurface(readback.depth[pixel])) continue;
-    Rgb color =
+    image.pixels()[pixel] =
         footprints[pixel] > 0 ? HeatColor(scale.Position(footprints[pixel])) : kUnratedColor;
-    if (IsShadowed(readback, light, pixel)) color = Mix(color, {}, kShadowShare);
-    image.pixels()[pixel] = color;
   }
+  return DrawScreenPanel(readback, light, std::move(image), samples);
+}
 
+Image DrawScreenPanel(const Readback& readback,
+                      const Light& light,
+                      Image image,
+                      absl::Span<const uint8_t> samples) {
+  const int width = readback.width();
+  const AffineDepth depth(readback.camera, readback.depth_kind);
+  for (size_t pixel = 0; pixel < samples.size(); ++pixel) {
+    if (!depth.IsSurface(readback.depth[pixel]) || !IsShadowed(readback, light, pixel)) continue;
+    image.pixels()[pixel] = Mix(image.pixels()[pixel], {}, kShadowShare);
+  }
   const Zoom zoom = ZoomFor(width, readback.height());
   if (zoom.magnified == 1) {
     // No room between the pixels: the sample pixels themselves are marked, after the reduction, so

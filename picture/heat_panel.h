@@ -31,6 +31,13 @@ Image DrawHeatPanel(const Readback& readback,
                     absl::Span<const uint8_t> samples,
                     const LogScale& scale);
 
+// The same of colours, one for each pixel of the read-back: in the size of the panel, darker in
+// shadow, with the edges that were used. Pixels without a surface stay as they are.
+Image DrawScreenPanel(const Readback& readback,
+                      const Light& light,
+                      Image colors,
+                      absl::Span<const uint8_t> samples);
+
 // The colours of the scale from bottom to top, with ticks and numbers at the right.
 void DrawColorBar(
     int x, int y, int height, const LogScale& scale, const Typeface& typeface, Canvas* canvas);

@@ -12,7 +12,7 @@
 namespace lightfit {
 namespace {
 
-constexpr int kBorder = 26;             // pixels around the map, for its size
+constexpr int kReach = 26;              // pixels: no dot is larger
 constexpr double kDensityRadius = 1.1;  // pixels
 constexpr double kSampleRadius = 1.3;   // pixels
 constexpr double kReceiverOpacity = 0.05;
@@ -30,17 +30,17 @@ struct Frame {
   }
 };
 
-Frame FrameFor(MapSize map, int size) {
+Frame FrameFor(MapSize map, int size, int border_px) {
   Frame frame;
-  frame.scale = (size - 2.0 * kBorder) / std::max(map.width, map.height);
+  frame.scale = (size - 2.0 * border_px) / std::max(map.width, map.height);
   frame.left = (size - frame.scale * map.width) / 2;
-  frame.top = kBorder;
+  frame.top = border_px;
   return frame;
 }
 
 // Whether a small dot there can be seen. A receiver may land anywhere, also where no int reaches.
 bool IsInPanel(const Eigen::Vector2d& pixel, int size) {
-  return pixel.minCoeff() > -kBorder && pixel.maxCoeff() < size + kBorder;
+  return pixel.minCoeff() > -kReach && pixel.maxCoeff() < size + kReach;
 }
 
 // Point clouds are drawn in floats, not by Cairo: a single receiver's share of a pixel is often
@@ -69,6 +69,28 @@ void DrawGrid(const Frame& frame, MapSize map, Canvas* canvas) {
   }
 }
 
+// Dots laid over each other approach the full colour, so brightness follows density without a scale
+// of its own; many receivers get a smaller share each, and need no round dots.
+void BlendReceivers(const std::vector<Eigen::Vector2d>& receivers,
+                    const Frame& frame,
+                    Rgb color,
+                    Image* image) {
+  const int size = image->width();
+  const double num_receivers = static_cast<double>(std::max<size_t>(receivers.size(), 1));
+  const float opacity = static_cast<float>(
+      std::clamp(kReceiverOpacity * size * size / num_receivers, kMinReceiverOpacity, 0.35));
+  const bool is_dense = receivers.size() > kDenseReceivers;
+  for (const Eigen::Vector2d& receiver : receivers) {
+    const Eigen::Vector2d pixel = frame.PixelOf(receiver);
+    if (!IsInPanel(pixel, size)) continue;
+    if (is_dense) {
+      image->Blend(static_cast<int>(pixel.x()), static_cast<int>(pixel.y()), color, 4 * opacity);
+    } else {
+      BlendDot(pixel, kDensityRadius, color, opacity, image);
+    }
+  }
+}
+
 }  // namespace
 
 MapView ViewMap(absl::Span<const Eigen::Vector3d> receivers_in_world,
@@ -91,9 +113,13 @@ MapView ViewMap(absl::Span<const Eigen::Vector3d> receivers_in_world,
   return view;
 }
 
-Canvas DrawMapPanel(const MapView& view, MapSize map, int size, const Typeface& typeface) {
+Canvas DrawMapPanel(const MapView& view,
+                    MapSize map,
+                    int size,
+                    const Typeface& typeface,
+                    const MapPanelStyle& style) {
   Canvas canvas(size, size, kPageColor);
-  const Frame frame = FrameFor(map, size);
+  const Frame frame = FrameFor(map, size, style.border_px);
   canvas.FillRectangle(static_cast<int>(frame.left),
                        static_cast<int>(frame.top),
                        static_cast<int>(frame.scale * map.width),
@@ -101,28 +127,14 @@ Canvas DrawMapPanel(const MapView& view, MapSize map, int size, const Typeface& 
                        kPanelColor);
   DrawGrid(frame, map, &canvas);
 
-  // Dots laid over each other approach the full colour, so brightness follows density without a
-  // scale of its own; many receivers get a smaller share each, and need no round dots.
-  const double num_receivers = static_cast<double>(std::max<size_t>(view.receivers.size(), 1));
-  const float opacity = static_cast<float>(
-      std::clamp(kReceiverOpacity * size * size / num_receivers, kMinReceiverOpacity, 0.35));
   Image image = canvas.ToImage();
-  const bool is_dense = view.receivers.size() > kDenseReceivers;
-  for (const Eigen::Vector2d& receiver : view.receivers) {
-    const Eigen::Vector2d pixel = frame.PixelOf(receiver);
-    if (!IsInPanel(pixel, size)) continue;
-    if (is_dense) {
-      image.Blend(
-          static_cast<int>(pixel.x()), static_cast<int>(pixel.y()), kReceiverColor, 4 * opacity);
-    } else {
-      BlendDot(pixel, kDensityRadius, kReceiverColor, opacity, &image);
-    }
-  }
+  BlendReceivers(view.others, frame, kUnratedColor, &image);
+  BlendReceivers(view.receivers, frame, style.receivers, &image);
   const float sample_opacity = view.samples.size() > 20000 ? kSampleOpacity / 2 : kSampleOpacity;
   for (const Eigen::Vector2d& sample : view.samples) {
     const Eigen::Vector2d pixel = frame.PixelOf(sample);
     if (!IsInPanel(pixel, size)) continue;
-    BlendDot(pixel, kSampleRadius, kSampleColor, sample_opacity, &image);
+    BlendDot(pixel, kSampleRadius, style.samples, sample_opacity, &image);
   }
   canvas.DrawImage(0, 0, image);
 
@@ -135,7 +147,8 @@ Canvas DrawMapPanel(const MapView& view, MapSize map, int size, const Typeface& 
                       frame.PixelOf({width, height}),
                       frame.PixelOf({0, height})},
                      2,
-                     kTextColor);
+                     style.outline);
+  if (!style.has_labels) return canvas;
 
   const Eigen::Vector2d bottom = frame.PixelOf({width / 2, height});
   typeface.Draw(static_cast<int>(bottom.x()),

@@ -23,4 +23,17 @@ inline const Rgb kFalseShadowColor = HexColor(0xff4d2e);  // dark that should be
 inline const Rgb kLightLeakColor = HexColor(0x2ec4ff);    // lit that should be dark
 inline const Rgb kCropColor = HexColor(0xffd75e);
 
+// The maps of a plan, told apart by hue, also by who sees two of the three colours (after Okabe and
+// Ito); from the eighth on paler, then darker. Every place that uses them writes the number too.
+inline Rgb MapColor(int map) {
+  constexpr uint32_t kHues[] = {
+      0x56b4e9, 0xe69f00, 0x009e73, 0xcc79a7, 0xf0e442, 0xd55e00, 0x3a7fd5};
+  constexpr int kNumHues = 7;
+  const Rgb color = HexColor(kHues[map % kNumHues]);
+  const int turn = map / kNumHues % 4;
+  if (turn == 0) return color;
+  if (turn == 3) return Mix(color, {}, 0.25f);
+  return turn == 1 ? Mix(color, {1, 1, 1}, 0.5f) : Mix(color, {}, 0.45f);
+}
+
 }  // namespace lightfit

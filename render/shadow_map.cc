@@ -1,9 +1,20 @@
 #include "render/shadow_map.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <limits>
 
 namespace lightfit {
+
+double StartOfSunRays(const Eigen::Vector3d& direction, const Eigen::AlignedBox3d& bounds) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int corner = 0; corner < 8; ++corner) {
+    nearest = std::min(
+        nearest,
+        direction.dot(bounds.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner))));
+  }
+  return nearest - 1e-3 * bounds.diagonal().norm();
+}
 
 MapRays::MapRays(const Light& light,
                  const Eigen::Matrix3d& map_from_ray,
@@ -17,13 +28,7 @@ MapRays::MapRays(const Light& light,
   }
   const Eigen::Vector3d direction = light.direction.stableNormalized();
   axes_.row(2) = direction.transpose();
-  double nearest = std::numeric_limits<double>::infinity();
-  for (int corner = 0; corner < 8; ++corner) {
-    nearest = std::min(
-        nearest,
-        direction.dot(bounds.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner))));
-  }
-  centre_ = (nearest - 1e-3 * bounds.diagonal().norm()) * direction;
+  centre_ = StartOfSunRays(direction, bounds) * direction;
 }
 
 std::optional<Ray> MapRays::At(double u, double v) const {
@@ -32,29 +37,6 @@ std::optional<Ray> MapRays::At(double u, double v) const {
   if (is_point_) return Ray{centre_, (axes_.transpose() * X).normalized()};
   if (!(X.z() > 0.0)) return std::nullopt;
   return Ray{centre_ + axes_.topRows<2>().transpose() * X.hnormalized(), axes_.row(2).transpose()};
-}
-
-ShadowMap RenderShadowMap(const RayCaster& caster,
-                          const Light& light,
-                          const Eigen::Matrix3d& map_from_ray,
-                          MapSize size,
-                          absl::Span<const uint8_t> wanted) {
-  ShadowMap map;
-  map.size = size;
-  map.distance.assign(static_cast<size_t>(size.width) * size.height,
-                      std::numeric_limits<double>::infinity());
-  const MapRays rays(light, map_from_ray, caster.bounds());
-  ParallelFor(size.height, 8, caster.num_threads(), [&](int begin, int end) {
-    for (int row = begin; row < end; ++row) {
-      for (int column = 0; column < size.width; ++column) {
-        const size_t texel = static_cast<size_t>(row) * size.width + column;
-        if (!wanted.empty() && wanted[texel] == 0) continue;
-        const std::optional<Ray> ray = rays.At(column + 0.5, row + 0.5);
-        if (ray.has_value()) map.distance[texel] = caster.FirstHit(*ray).distance;
-      }
-    }
-  });
-  return map;
 }
 
 }  // namespace lightfit

@@ -24,10 +24,10 @@ FIGURES = f"{SEARCH} optimizer/figures"
 FIT = f"{FIGURES} optimizer"
 SIZING = f"{FIT} optimizer/sizing"
 CORE = f"{SIZING} optimizer/tracking"
-WIRE = f"{CORE} lightfit proto wire"
+WIRE = f"{CORE} partition lightfit proto wire"
 IO = f"{WIRE} io"
 JOBS = f"{IO} jobs jobs/*"
-EVERYTHING_BELOW_CLI = f"{JOBS} methods partition partition/* render render/* picture calls server"
+EVERYTHING_BELOW_CLI = f"{JOBS} methods partition/* render render/* picture calls server"
 
 MAY_INCLUDE = {
     "base": "",
@@ -45,14 +45,15 @@ MAY_INCLUDE = {
     "partition/shipped": f"{CORE} methods partition",
     "render": f"{CORE} partition",
     "render/generator": f"{CORE} render",
+    "render/shipped": f"{CORE} partition partition/shipped render",
     "proto": "lightfit",
     "wire": WIRE,
     "io": IO,
     "jobs": IO,
-    "jobs/compare": f"{IO} jobs methods partition partition/* render",
+    "jobs/compare": f"{IO} jobs methods partition/* render",
     "jobs/tune": f"{IO} jobs jobs/compare methods render render/generator",
     "jobs/shot": f"{IO} jobs",
-    "picture": f"{JOBS} methods partition render",
+    "picture": f"{JOBS} methods render",
     "calls": f"{IO} jobs",
     "server": "base lightfit io calls",
     "cli/flags": EVERYTHING_BELOW_CLI,
@@ -61,7 +62,7 @@ MAY_INCLUDE = {
     "python": f"{IO} jobs calls",
     "examples": f"{CORE} render render/generator lightfit",
     "fuzz": f"{IO} jobs render calls",
-    "bench": f"{JOBS} methods partition partition/* render render/* picture tests",
+    "bench": f"{JOBS} methods partition/* render render/* picture tests",
     "bench/service.cc": f"{JOBS} bench calls server tests",
     "tests": f"{EVERYTHING_BELOW_CLI} cli cli/*",
 }

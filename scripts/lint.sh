@@ -37,7 +37,7 @@ check_layers() {
 # with their own path, so that excerpts tell where they live.
 check_overviews() {
   say "overviews"
-  local folder header rooms=(base geometry optimizer methods render wire io jobs picture calls server)
+  local folder header rooms=(base geometry optimizer methods partition render wire io jobs picture calls server)
   for folder in "${rooms[@]}" proto cli python fuzz bench tests examples docs scripts; do
     [[ -d $folder ]] || continue
     [[ -e $folder/README.md ]] ||

@@ -1,7 +1,7 @@
 // wire/result_json.h
 //
 // Results as lightfit.v1.FitResult, and as JSON files.
-// In:   LightMatrix per light, with the energies of other methods to compare with.
+// In:   LightMatrix or LightPlan per light, with the energies of other methods to compare with.
 // Out:  v1::FitResult; a JSON text file, the same bytes for the same result.
 #pragma once
 
@@ -18,17 +18,30 @@
 #include "optimizer/evaluate.h"
 #include "optimizer/fit_options.h"
 #include "optimizer/light_matrix.h"
+#include "partition/fit_plan.h"
+#include "partition/plan_options.h"
 #include "wire/matrix_proto.h"
 
 namespace lightfit {
+
+// A plan and what it comes to.
+struct PlanFit {
+  LightPlan plan;
+  Figures figures;  // of all its maps, judged as the yardsticks are
+  double guard_texels = 0.0;
+};
 
 // One light's fit beside its yardsticks, all judged by EvaluateMatrix() with the same options.
 struct LightFit {
   Light light;
   absl::StatusOr<LightMatrix> matrix = absl::UnknownError("not fitted");
+  // Of a plan of several maps, where there is one, the answer instead of `matrix`; of one map
+  // beside it, which is the same.
+  std::optional<PlanFit> plan;
   std::optional<double> wrong_share;    // of `matrix`, foretold: 0 ... 1
   std::optional<Figures> focused;       // of the usual focused map: Search::kFocused
   std::optional<Figures> as_published;  // of FitOptions::AsPublished()
+  std::optional<Figures> one_map;       // beside a plan: of a single map of as many texels
   std::optional<double>
       time_ms;  // only when asked for: results with times are never the same twice
 };
@@ -38,7 +51,8 @@ struct FitReport {
   Camera camera;
   DepthKind depth_kind = DepthKind::kCameraZ;
   FitOptions options;
-  MapSize map;
+  std::optional<PlanOptions> plan_options;  // where plans were asked for
+  MapSize map;                              // else
   ClipConvention clip = ClipConvention::Vulkan();
   std::vector<LightFit> lights;
 };

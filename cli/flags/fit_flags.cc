@@ -22,6 +22,7 @@ constexpr char kExamples[] =
     "Examples:\n"
     "  lightfit fit 0001.exr --lights scene.json --json matrices.json --picture gain.png\n"
     "  lightfit fit 0001.exr --light sun=sun:-0.3,0.2,-1 --map 2048x1024 --clip direct3d\n"
+    "  lightfit fit 0001.exr --lights scene.json --maps 4 --texels 2048x2048 --json maps.json\n"
     "  lightfit fit 0001.exr --lights scene.json --only key --as-published\n"
     "  lightfit fit --summary part1.summary part2.summary --json shot.json\n"
     "\n"
@@ -284,6 +285,7 @@ void DeclareFitFlags(CLI::App* app, FitFlags* flags) {
   DeclareInput(app, flags);
   DeclareCameraFlags(app, kCameraGroup, flags);
   DeclareMapFlags(app, "Map", flags);
+  DeclarePlanFlags(app, &flags->plan);
   DeclareMethod(app, flags);
   DeclareOutput(app, flags);
   app->footer(kExamples);
@@ -293,6 +295,7 @@ void DeclareFitFlags(CLI::App* app, FitFlags* flags) {
     flags->has_border = app->count("--border") > 0;
     CheckSource(*app, *flags, {kInputGroup, kCameraGroup});
     CheckNeedsOfFit(*app, *flags);
+    CheckPlanFlags(*app, flags);
   });
 }
 

@@ -11,6 +11,7 @@
 
 #include "absl/status/statusor.h"
 #include "cli/flags/light_flags.h"
+#include "cli/flags/plan_flags.h"
 #include "geometry/clip.h"
 #include "io/camera_exr.h"
 #include "optimizer/fit_options.h"
@@ -32,6 +33,7 @@ struct FitFlags {
   FitOptions options;
   bool has_metric = false, has_cover = false, has_border = false;  // whether they were given
   bool as_published = false;
+  PlanFlags plan;
   ClipConvention clip = ClipConvention::Vulkan();
 
   std::optional<DepthKind> depth_kind;  // absent: the camera file's, or kCameraZ

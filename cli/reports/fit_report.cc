@@ -9,12 +9,12 @@
 #include "base/number.h"
 #include "base/table.h"
 #include "cli/flags/choices.h"
+#include "cli/reports/fit_cells.h"
+#include "cli/reports/plan_report.h"
 #include "optimizer/figures/foretell.h"
 
 namespace lightfit::cli {
 namespace {
-
-constexpr char kNoMatrix[] = "no matrix, see below";
 
 constexpr char kLegend[] =
     "\nWrong: shadow pixels that will be wrong, foretold, of all pixels of the image, with the\n"
@@ -33,16 +33,14 @@ constexpr char kBorderLegend[] =
     "other.\n"
     "Figures of a light with a dark border are over the edges that such a map serves.\n";
 
-bool HasDarkBorder(const std::vector<FitComparison>& comparisons) {
-  return std::any_of(comparisons.begin(), comparisons.end(), [](const FitComparison& comparison) {
-    return comparison.final.ok() && comparison.final->matrix.border == Border::kDark;
-  });
-}
+constexpr char kPlanBorderLegend[] =
+    "Border: what look-ups outside of all maps must find; the maps are of no use with the other.\n"
+    "Figures of a light with a dark border are over the edges that such maps serve.\n";
 
 // How far off the forecasts may be, and what would make them better.
 std::string ForecastText(const Readback& readback, const std::vector<FitComparison>& comparisons) {
   for (const FitComparison& comparison : comparisons) {
-    if (!comparison.final.ok()) continue;
+    if (!comparison.ok()) continue;
     return absl::StrFormat(
         "On two lights of three the measured share is within a factor of %.1f of the foretold "
         "one%s.\n",
@@ -53,17 +51,6 @@ std::string ForecastText(const Readback& readback, const std::vector<FitComparis
               "chosen");
   }
   return "";
-}
-
-std::string RatioText(const absl::StatusOr<JudgedMatrix>& before, const Figures& after) {
-  if (!before.ok() || !(after.wrong_share.value_or(0.0) > 0.0)) return "-";
-  const double ratio = before->figures.wrong_share.value_or(0.0) / *after.wrong_share;
-  if (ratio < kSameForecast && ratio > 1.0 / kSameForecast) return "same";
-  return absl::StrCat(FigureText(ratio), "x");
-}
-
-std::string WrongText(const absl::StatusOr<JudgedMatrix>& map) {
-  return map.ok() ? PercentText(map->figures.wrong_share.value_or(0.0)) : "-";
 }
 
 Table FigureTable(const std::vector<FitComparison>& comparisons) {
@@ -120,11 +107,11 @@ Table SampleTable(const std::vector<FitComparison>& comparisons) {
   const bool has_border = HasDarkBorder(comparisons);
   if (has_border) table.AddColumn("rejected", "far outside");
   for (const FitComparison& comparison : comparisons) {
-    if (!comparison.final.ok()) {
+    if (!comparison.ok()) {
       table.AddRow({comparison.light.name, kNoMatrix});
       continue;
     }
-    const SampleCounts& counts = comparison.final->matrix.figures.samples;
+    const SampleCounts& counts = comparison.samples();
     std::vector<std::string> row = {comparison.light.name,
                                     absl::StrCat(counts.candidates),
                                     absl::StrCat(counts.used),
@@ -167,6 +154,13 @@ std::string FocusedInsteadText(const LightMatrix& matrix, const FitOptions& opti
       options.samples.min_samples);
 }
 
+std::string CoverText(const FitOptions& options) {
+  if (options.cover == Cover::kReceivers) return "visible";
+  if (options.border == BorderChoice::kDark) return "lit, dark border";
+  return options.border == BorderChoice::kAutomatic ? "shadowed or lit, the border by forecast"
+                                                    : "shadowed";
+}
+
 std::string MethodText(const FitOptions& options) {
   return absl::StrCat(WordFor(SearchWords(), options.search),
                       " search",
@@ -176,11 +170,7 @@ std::string MethodText(const FitOptions& options) {
                       ", ",
                       WordFor(MetricWords(), options.metric),
                       " metric, around what is ",
-                      options.cover == Cover::kReceivers      ? "visible"
-                      : options.border == BorderChoice::kDark ? "lit, dark border"
-                      : options.border == BorderChoice::kAutomatic
-                          ? "shadowed or lit, the border by forecast"
-                          : "shadowed");
+                      CoverText(options));
 }
 
 std::string ShortMethodText(const FitOptions& options) {
@@ -205,6 +195,27 @@ std::string FitReportText(const std::string& source,
                       SampleTable(comparisons).Text(),
                       kLegend,
                       HasDarkBorder(comparisons) ? kBorderLegend : "",
+                      ForecastText(readback, comparisons),
+                      MeasuredText(readback, comparisons));
+}
+
+std::string PlanReportText(const std::string& source,
+                           const Readback& readback,
+                           const PlanOptions& options,
+                           const std::vector<FitComparison>& comparisons) {
+  return absl::StrCat(absl::StrFormat("%s: %d x %d pixels; %s\nPlans: %s\n\n",
+                                      source,
+                                      readback.width(),
+                                      readback.height(),
+                                      PlanSizeText(options),
+                                      PlanMethodText(options)),
+                      PlanTable(comparisons).Text(),
+                      "\n",
+                      PlanMapTable(comparisons).Text(),
+                      "\n",
+                      SampleTable(comparisons).Text(),
+                      PlanLegend(options),
+                      HasDarkBorder(comparisons) ? kPlanBorderLegend : "",
                       ForecastText(readback, comparisons),
                       MeasuredText(readback, comparisons));
 }

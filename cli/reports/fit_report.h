@@ -1,6 +1,6 @@
 // cli/reports/fit_report.h
 //
-// What `lightfit fit` prints: two tables and what their numbers mean.
+// What `lightfit fit` prints: tables and what their numbers mean.
 #pragma once
 
 #include <string>
@@ -17,11 +17,20 @@ std::string FitReportText(const std::string& source,
                           const FitOptions& options,
                           const std::vector<FitComparison>& comparisons);
 
+// The same with plans of several maps.
+std::string PlanReportText(const std::string& source,
+                           const Readback& readback,
+                           const PlanOptions& options,
+                           const std::vector<FitComparison>& comparisons);
+
 // Why a light has its focused map instead of a searched one; empty: it has not.
 std::string FocusedInsteadText(const LightMatrix& matrix, const FitOptions& options);
 
 // "global search, parallelogram, l2 metric": the choices in the command line's words.
 std::string MethodText(const FitOptions& options);
+
+// "shadowed or lit, the border by forecast": what maps have room for.
+std::string CoverText(const FitOptions& options);
 
 // "global search, l1-edge": as much of it as fits over a picture.
 std::string ShortMethodText(const FitOptions& options);

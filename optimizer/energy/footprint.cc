@@ -52,33 +52,42 @@ EnergyGradient EnergyAndGradient(const Eigen::Matrix3d& map_from_ray,
 
 FootprintStatistics ComputeFootprintStatistics(const Eigen::Matrix3d& map_from_ray,
                                                const Samples& samples) {
-  FootprintStatistics statistics;
+  FootprintSet set;
+  set.Add(map_from_ray, samples);
+  return set.Statistics();
+}
+
+void FootprintSet::Add(const Eigen::Matrix3d& map_from_ray, const Samples& samples) {
   const Eigen::Vector3d p = map_from_ray.row(2);
   const Eigen::Matrix<double, 3, 2> R12 = map_from_ray.inverse().leftCols<2>();
-  ScratchVector<double> footprints;
-  footprints.reserve(samples.size());
-  double sum_squared = 0.0, sum_weight = 0.0;
-  for (size_t i = 0; i < samples.size(); ++i) {
-    if (IsStopped(i)) return statistics;
+  footprints_.reserve(footprints_.size() + samples.size());
+  for (size_t i = 0; i < samples.size() && !IsStopped(i); ++i) {
     const Sample sample = samples.At(i);
     const double w = p.dot(sample.X);
-    if (!(w > 0.0)) continue;
+    if (!(w > 0.0)) {
+      ++num_behind_;
+      continue;
+    }
     const double squared = 0.5 * (w * sample.D * R12).squaredNorm();
-    footprints.push_back(std::sqrt(squared));
-    sum_squared += sample.weight * squared;
-    sum_weight += sample.weight;
+    footprints_.push_back(std::sqrt(squared));
+    sum_squared_ += sample.weight * squared;
+    sum_weight_ += sample.weight;
   }
-  statistics.num_behind = static_cast<int64_t>(samples.size() - footprints.size());
-  if (footprints.empty()) return statistics;
-  const auto quantile = [&footprints](double share) {
-    const size_t rank = static_cast<size_t>(std::lround(share * (footprints.size() - 1)));
-    std::nth_element(footprints.begin(), footprints.begin() + rank, footprints.end());
-    return footprints[rank];
+}
+
+FootprintStatistics FootprintSet::Statistics() {
+  FootprintStatistics statistics;
+  statistics.num_behind = num_behind_;
+  if (footprints_.empty()) return statistics;
+  const auto quantile = [this](double share) {
+    const size_t rank = static_cast<size_t>(std::lround(share * (footprints_.size() - 1)));
+    std::nth_element(footprints_.begin(), footprints_.begin() + rank, footprints_.end());
+    return footprints_[rank];
   };
-  statistics.rms = std::sqrt(sum_squared / sum_weight);
+  statistics.rms = std::sqrt(sum_squared_ / sum_weight_);
   statistics.median = quantile(0.5);
   statistics.p99 = quantile(0.99);
-  statistics.worst = *std::max_element(footprints.begin(), footprints.end());
+  statistics.worst = *std::max_element(footprints_.begin(), footprints_.end());
   return statistics;
 }
 

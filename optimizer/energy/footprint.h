@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
+#include "base/scratch.h"
 #include "optimizer/energy/metric.h"
 #include "optimizer/readback/samples.h"
 
@@ -58,5 +59,19 @@ struct FootprintStatistics {
 // over those in front of the map.
 FootprintStatistics ComputeFootprintStatistics(const Eigen::Matrix3d& map_from_ray,
                                                const Samples& samples);
+
+// The same over samples that are spread over several maps.
+class FootprintSet {
+ public:
+  // These samples, which ask this map.
+  void Add(const Eigen::Matrix3d& map_from_ray, const Samples& samples);
+
+  FootprintStatistics Statistics();
+
+ private:
+  ScratchVector<double> footprints_;
+  double sum_squared_ = 0.0, sum_weight_ = 0.0;
+  int64_t num_behind_ = 0;
+};
 
 }  // namespace lightfit

@@ -6,18 +6,15 @@
 #include <optional>
 
 #include "geometry/affine_depth.h"
-#include "optimizer/figures/pixel_footprint.h"
 #include "optimizer/readback/samples.h"
 #include "optimizer/readback/surfaces.h"
 
 namespace lightfit {
 
-absl::StatusOr<std::vector<float>> FootprintImage(const Readback& readback,
-                                                  const Light& light,
-                                                  const Eigen::Matrix4d& map_from_world,
-                                                  const SampleOptions& options) {
-  const absl::StatusOr<PixelFootprints> pixels =
-      PixelFootprints::Create(readback, light, map_from_world, options);
+namespace {
+
+absl::StatusOr<std::vector<float>> ImageOf(const Readback& readback,
+                                           const absl::StatusOr<PixelFootprints>& pixels) {
   if (!pixels.ok()) return pixels.status();
   std::vector<float> footprints(readback.depth.size(), 0.0f);
   for (int y = 0; y < readback.height(); ++y) {
@@ -30,6 +27,22 @@ absl::StatusOr<std::vector<float>> FootprintImage(const Readback& readback,
     }
   }
   return footprints;
+}
+
+}  // namespace
+
+absl::StatusOr<std::vector<float>> FootprintImage(const Readback& readback,
+                                                  const Light& light,
+                                                  const Eigen::Matrix4d& map_from_world,
+                                                  const SampleOptions& options) {
+  return ImageOf(readback, PixelFootprints::Create(readback, light, map_from_world, options));
+}
+
+absl::StatusOr<std::vector<float>> FootprintImage(const Readback& readback,
+                                                  const Light& light,
+                                                  absl::Span<const SizedMatrix> maps,
+                                                  const SampleOptions& options) {
+  return ImageOf(readback, PixelFootprints::Create(readback, light, maps, options));
 }
 
 absl::StatusOr<std::vector<uint8_t>> SampleImage(const Surfaces& surfaces,

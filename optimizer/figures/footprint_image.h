@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "absl/types/span.h"
 #include "geometry/light.h"
+#include "optimizer/figures/pixel_footprint.h"
 #include "optimizer/readback/readback.h"
 #include "optimizer/readback/sample_options.h"
 #include "optimizer/readback/surfaces.h"
@@ -22,6 +24,13 @@ namespace lightfit {
 absl::StatusOr<std::vector<float>> FootprintImage(const Readback& readback,
                                                   const Light& light,
                                                   const Eigen::Matrix4d& map_from_world,
+                                                  const SampleOptions& options = {});
+
+// The same of several maps of the light, at each pixel of the one that it asks; 0 where none holds
+// it.
+absl::StatusOr<std::vector<float>> FootprintImage(const Readback& readback,
+                                                  const Light& light,
+                                                  absl::Span<const SizedMatrix> maps,
                                                   const SampleOptions& options = {});
 
 // 1 at the pixels whose samples are used for this light, else 0. Row-major.

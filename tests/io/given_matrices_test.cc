@@ -93,6 +93,25 @@ TEST(GivenMatrices, AResultHasOneForEachLight) {
   EXPECT_THAT(given->Of("noon"), StatusIs(absl::StatusCode::kNotFound, HasSubstr("has \"sun\"")));
 }
 
+// One of several maps must not pass for the light's matrix.
+TEST(GivenMatrices, APlanOfSeveralMapsIsRefused) {
+  const std::string map =
+      std::string("{\"map\": {\"width\": 200, \"height\": 300}, \"mapFromWorld\": {\"m\": ") +
+      kFlat + "}}";
+  const auto result = [&](const std::string& maps, const std::string& more) {
+    return "{\"lights\": [{\"name\": \"sun\", \"plan\": {\"maps\": [" + maps + "]}" + more + "}]}";
+  };
+  EXPECT_THAT(
+      ParseGivenMatrices("engine", result(map + ", " + map, ""), {400, 300}),
+      StatusIs(absl::StatusCode::kInvalidArgument,
+               HasSubstr("light \"sun\": has a plan of 2 maps, and plans cannot be given")));
+  // A plan of one map is that matrix.
+  const absl::StatusOr<GivenMatrices> given =
+      ParseGivenMatrices("engine", result(map, ", " + map.substr(1, map.size() - 2)), {400, 300});
+  ASSERT_THAT(given, IsOk());
+  EXPECT_EQ(given->Of("sun")->map_from_world(0, 3), 8);
+}
+
 TEST(GivenMatrices, ABorderIsLitUnlessTheFileSaysDark) {
   const MapSize map = {400, 300};
   const auto border_of = [&map](const std::string& json) {

@@ -29,24 +29,40 @@ double Density(const MethodMap& map, const Eigen::Vector3d& point, const Eigen::
          (2.0 * kStep);
 }
 
-// What the general n is made for: along a line in the image plane that begins where the view does,
-// texels per pixel are the same at the two ends of the map.
+// The body's corner of least b, the nearest to the camera of several.
+Eigen::Vector3d StartOf(const std::vector<Eigen::Vector3d>& body,
+                        const Camera& camera,
+                        const Eigen::Vector3d& along) {
+  constexpr double kRounding = 1e-9;
+  Eigen::Vector3d start = body[0];
+  for (const Eigen::Vector3d& point : body) {
+    const double further = along.dot(point - start);
+    const bool nearer = CameraDepth(camera, point) < CameraDepth(camera, start);
+    if (further < -kRounding || (further < kRounding && nearer)) start = point;
+  }
+  return start;
+}
+
+// What the general n is made for: along a line in the image plane that begins where the body does,
+// texels per pixel are the same at the two ends of the map. For lights within the cone of the view,
+// 0.5 from its axis, the body begins at its far plane.
 TEST(LispsmMap, GeneralFormulaBalancesTheTwoEnds) {
-  for (const double angle : {M_PI / 2, 1.2, 0.8, 0.4}) {
+  for (const double angle : {M_PI / 2, 1.2, 0.8, 0.4, 0.2, M_PI - 0.3}) {
     const MethodInput input = LevelView(SunAt(angle));
     const absl::StatusOr<MethodMap> map = LispsmMap(input);
     ASSERT_THAT(map, IsOk());
     const Eigen::Vector3d sun = SunAt(angle), view(0.0, 0.0, -1.0);
     const Eigen::Vector3d along = (view - view.dot(sun) * sun).normalized();
-    double low = 1e300, high = -1e300;
-    for (const Eigen::Vector3d& point : ViewBody(input.camera, input.receivers)) {
-      low = std::min(low, along.dot(point));
-      high = std::max(high, along.dot(point));
-    }
-    // The line begins at camera depth near and b = low, and rises by sin(angle) per unit.
-    const double z0 = input.camera.near, z1 = z0 + std::sin(angle) * (high - low);
-    const double at_start = Density(*map, low * along, along);
-    const double at_end = Density(*map, high * along, along);
+    const std::vector<Eigen::Vector3d> body = ViewBody(input.camera, input.receivers);
+    const Eigen::Vector3d start = StartOf(body, input.camera, along);
+    double length = 0.0;
+    for (const Eigen::Vector3d& point : body) length = std::max(length, along.dot(point - start));
+    const double z0 = CameraDepth(input.camera, start);
+    const bool within_cone = std::abs(std::sin(angle)) < std::sin(0.5);
+    EXPECT_NEAR(z0, within_cone ? input.camera.far : input.camera.near, 1e-9) << angle;
+    const Eigen::Vector3d end = start + length * along;
+    const double z1 = CameraDepth(input.camera, end);
+    const double at_start = Density(*map, start, along), at_end = Density(*map, end, along);
     EXPECT_NEAR(at_start * z0 / (at_end * z1), 1.0, 1e-6) << angle;
     if (angle == M_PI / 2) {
       // The published special case: n' = n + sqrt(n f), so densities are as (n' + d)^2 to n'^2.
@@ -54,6 +70,51 @@ TEST(LispsmMap, GeneralFormulaBalancesTheTwoEnds) {
       EXPECT_NEAR(at_start / at_end, (n + 19.0) * (n + 19.0) / (n * n), 1e-4);
     }
   }
+}
+
+// Lloyd 2006, 4.4: the product of the largest ratios of a texel's width to a pixel's, across and
+// along the warp. They are largest at corners of the view.
+double StorageFactor(const MethodInput& input, const MethodMap& map) {
+  const Eigen::Vector3d sun = input.light.direction.normalized(), view(0.0, 0.0, -1.0);
+  const Eigen::Vector3d along = (view - view.dot(sun) * sun).normalized();
+  const Eigen::Vector3d across = along.cross(sun);
+  const double tan_theta = std::tan(0.5);
+  double m_x = 0.0, m_z = 0.0;
+  for (const Eigen::Vector3d& corner : FrustumCorners(input.camera)) {
+    const double z = CameraDepth(input.camera, corner);
+    const double step = 1e-6 * z;
+    const double ds = (Texel(map, corner + step * across) - Texel(map, corner - step * across)).x();
+    const double dt = (Texel(map, corner + step * along) - Texel(map, corner - step * along)).y();
+    m_x = std::max(m_x, input.map.width * 2.0 * step / (std::abs(ds) * 2.0 * z * tan_theta));
+    m_z = std::max(m_z, input.map.height * 2.0 * step / (std::abs(dt) * 2.0 * z * tan_theta));
+  }
+  return m_x * m_z;
+}
+
+// From straight behind no warp is possible, and (far / near)^2 texels a pixel are needed. The
+// square of the far plane, turned by half a right angle, fills half of a square around it; more
+// than twice that no light should need by much, wherever it is.
+TEST(LispsmMap, NoLightNeedsManyMoreTexelsThanOneStraightBehind) {
+  constexpr double kTwiceAndSome = 2.3;  // largest measured: 1.99; with the nearest depth 11.2
+  MethodInput input = LevelView({0.0, 0.0, -1.0});
+  input.camera.far = 1000.0;
+  input.receivers = {Eigen::Vector3d::Constant(-2000.0), Eigen::Vector3d::Constant(2000.0)};
+  Random random(24);
+  double largest = 0.0;
+  for (int i = 0; i < 3000; ++i) {
+    // Half of them within the cone of the view.
+    Eigen::Vector3d sun = random.UnitVector();
+    if (random.Coin()) {
+      sun = {random.Uniform(-0.6, 0.6), random.Uniform(-0.6, 0.6), random.Coin() ? 1.0 : -1.0};
+    }
+    input.light = Light::Directional("sun", sun);
+    const absl::StatusOr<MethodMap> map = LispsmMap(input);
+    ASSERT_THAT(map, IsOk());
+    largest = std::max(largest, StorageFactor(input, *map) / 1e6);
+  }
+  EXPECT_LT(largest, kTwiceAndSome);
+  EXPECT_GT(largest, 1.5);
+  std::printf("%g times the texels of a light straight behind\n", largest);
 }
 
 TEST(LispsmMap, SimpleFormulaIsNearPlusRootOverSine) {

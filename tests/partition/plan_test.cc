@@ -6,7 +6,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "geometry/homography.h"
+#include "tests/partition/random_plan.h"
 #include "tests/testing/matchers.h"
 #include "tests/testing/random_cases.h"
 
@@ -16,39 +16,10 @@ namespace {
 using ::testing::HasSubstr;
 using testing::IsOk;
 using testing::Random;
+using testing::RandomPlan;
+using testing::RandomPlanLight;
+using testing::RandomPlanMap;
 using testing::StatusIs;
-
-Light RandomLight(Random& random) {
-  if (random.Coin()) return Light::Directional("sun", random.UnitVector());
-  return Light::Point("lamp", random.InCube(3.0));
-}
-
-// A map of the light around a random axis, of a random size and warp.
-PlanMap RandomMap(const Light& light, Random& random) {
-  PlanMap map;
-  map.size = {random.Int(40, 400), random.Int(40, 400)};
-  Eigen::Matrix3d map_from_ray;
-  if (light.kind == Light::Kind::kPoint) {
-    map_from_ray = random.Rotation();
-  } else {
-    map_from_ray = Eigen::Matrix3d::Identity();
-    map_from_ray.row(2) << random.Uniform(-0.1, 0.1), random.Uniform(-0.1, 0.1), 1.0;
-  }
-  map_from_ray.topRows<2>() *= random.LogUniform(30.0, 300.0);
-  map_from_ray.row(0) += 0.5 * map.size.width * map_from_ray.row(2);
-  map_from_ray.row(1) += 0.5 * map.size.height * map_from_ray.row(2);
-  map_from_ray *= random.LogUniform(0.01, 100.0);  // a matrix is the same at any scale
-  map.map_from_world =
-      MapFromWorld(map_from_ray, RayFromWorld(light), light, DepthRange{1.0, 10.0}, 0.1);
-  return map;
-}
-
-Plan RandomPlan(const Light& light, Random& random) {
-  Plan plan;
-  const int num_maps = random.Int(1, 8);
-  for (int k = 0; k < num_maps; ++k) plan.maps.push_back(RandomMap(light, random));
-  return plan;
-}
 
 Eigen::Vector2d TexelOf(const PlanMap& map, const Eigen::Vector3d& world) {
   const Eigen::Vector4d at = map.map_from_world * world.homogeneous();
@@ -74,7 +45,7 @@ TEST(PlanLookUp, AsksTheDensestMapThatHoldsTheReceiverOnWhateverSurface) {
   int num_places = 0, num_none = 0;
   for (uint64_t seed = 1; seed <= 40; ++seed) {
     Random random(seed);
-    const Light light = RandomLight(random);
+    const Light light = RandomPlanLight(random);
     const Plan plan = RandomPlan(light, random);
     const auto look_up = PlanLookUp::Create(plan, light);
     ASSERT_THAT(look_up, IsOk());
@@ -112,9 +83,9 @@ TEST(PlanLookUp, AsksTheDensestMapThatHoldsTheReceiverOnWhateverSurface) {
 TEST(PlanLookUp, CoarsenessIsTheCubeRootOfAreaUpToTheReceiversOwnFactor) {
   for (uint64_t seed = 1; seed <= 20; ++seed) {
     Random random(seed);
-    const Light light = RandomLight(random);
+    const Light light = RandomPlanLight(random);
     Plan plan;
-    plan.maps = {RandomMap(light, random), RandomMap(light, random)};
+    plan.maps = {RandomPlanMap(light, random), RandomPlanMap(light, random)};
     const auto look_up = PlanLookUp::Create(plan, light);
     ASSERT_THAT(look_up, IsOk());
     int num_compared = 0;
@@ -140,7 +111,7 @@ TEST(PlanLookUp, GuardKeepsAFilterInTheMap) {
   Random random(7);
   const Light light = Light::Directional("sun", {0.0, 0.0, -1.0});
   Plan plan;
-  plan.maps = {RandomMap(light, random)};
+  plan.maps = {RandomPlanMap(light, random)};
   const auto look_up = PlanLookUp::Create(plan, light, 3.0);
   ASSERT_THAT(look_up, IsOk());
   int num_inside = 0, num_kept_out = 0;
@@ -164,7 +135,7 @@ TEST(PlanLookUp, HalfSpacesSayWhoMayAsk) {
   Random random(8);
   const Light light = Light::Directional("sun", {0.3, -0.2, -1.0});
   Plan plan;
-  plan.maps = {RandomMap(light, random), RandomMap(light, random)};
+  plan.maps = {RandomPlanMap(light, random), RandomPlanMap(light, random)};
   plan.maps[1].map_from_world = plan.maps[0].map_from_world;
   plan.maps[1].size = plan.maps[0].size;
   const Eigen::RowVector4d upper(0.0, 1.0, 0.0, -0.1);
@@ -190,7 +161,7 @@ TEST(PlanLookUp, SaysWhatIsWrongWithAPlan) {
   EXPECT_THAT(PlanLookUp::Create(Plan(), light),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("0 maps, want 1 ... 32")));
   Plan plan;
-  plan.maps.assign(kMaxPlanMaps + 1, RandomMap(light, random));
+  plan.maps.assign(kMaxPlanMaps + 1, RandomPlanMap(light, random));
   EXPECT_THAT(PlanLookUp::Create(plan, light),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("33 maps")));
   plan.maps.resize(1);

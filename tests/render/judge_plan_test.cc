@@ -10,6 +10,7 @@
 #include "geometry/homography.h"
 #include "render/shadow_map.h"
 #include "tests/render/plan_stage.h"
+#include "tests/render/texel_verdict.h"
 #include "tests/testing/matchers.h"
 
 namespace lightfit {
@@ -22,6 +23,7 @@ using testing::Random;
 using testing::RandomLightAbove;
 using testing::RandomPlan;
 using testing::StatusIs;
+using testing::Verdict;
 
 ShadowImage Judged(const PlanStage& stage, const Plan& plan, int phases = 1) {
   JudgeOptions options;
@@ -134,12 +136,7 @@ TEST(JudgePlan, FourQuartersOfTheSameSizeAreLessWrongThanOneMap) {
   }
 }
 
-// What the texel that PlanLookUp names says of the receiver, by all hits on its ray. Nothing where
-// rounding decides.
-struct Verdict {
-  bool is_known = false, ideal = false, practical = false, practical_is_close = false;
-};
-
+// What the texel that PlanLookUp names says of the receiver.
 class ByHand {
  public:
   ByHand(const PlanStage& stage, const Plan& plan)
@@ -150,26 +147,13 @@ class ByHand {
   Verdict At(const SurfacePoint& pixel) const {
     const PlanPlace place = look_up_.At(pixel.position);
     if (place.map < 0) return {true, plan_.border == Border::kDark, plan_.border == Border::kDark};
-    const Eigen::Vector2d centre =
-        place.texel.array().floor().matrix() + Eigen::Vector2d::Constant(0.5);
-    // On a texel's edge the one or the other.
-    if ((place.texel - centre).cwiseAbs().maxCoeff() > 0.5 - 1e-6) return {};
+    if (testing::IsOnATexelsEdge(place.texel)) return {};
+    const Eigen::Vector2d centre = testing::CentreOfTexelAt(place.texel);
     const Eigen::Matrix3d map_from_ray =
         *MapFromRay(plan_.maps[place.map].map_from_world, stage_.light);
     const auto ray =
         MapRays(stage_.light, map_from_ray, stage_.caster.bounds()).At(centre.x(), centre.y());
-    const testing::BruteHits hits = testing::AllHits(stage_.caster.scene(), *ray);
-    const double slope = pixel.normal.dot(ray->direction);
-    if (hits.near_an_edge || slope > -1e-2) return {};
-    const double wanted = pixel.normal.dot(pixel.position - ray->origin) / slope;
-    if (hits.distances.empty()) return {true, false, false};
-    double nearest = hits.distances[0];
-    for (const double hit : hits.distances) {
-      if (std::abs(hit - wanted) < std::abs(nearest - wanted)) nearest = hit;
-    }
-    // The default's constant is at most 2e-4 of the scene, about 20 units.
-    const double in_front = wanted - hits.distances[0];
-    return {true, nearest > hits.distances[0] + 1e-4, in_front > 0.0, std::abs(in_front) < 0.02};
+    return testing::VerdictOf(stage_.caster.scene(), pixel, *ray);
   }
 
  private:

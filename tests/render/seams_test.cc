@@ -271,7 +271,7 @@ TEST(FindSeams, AreaIsContinuousWhereTheDenserMapIsAsked) {
         jumps.across.p99);
   }
   EXPECT_GT(statistics.by_density.seams, 1000);
-  EXPECT_GT(statistics.by_density.at_edges, 50);
+  EXPECT_GT(statistics.by_density.at_edges, 30);
   EXPECT_LT(statistics.by_density.area.mean, 1.01);
   EXPECT_LT(statistics.by_density.area.p99, 1.1);
   // Shape and direction jump all the same; and rectangles end anywhere.

@@ -86,50 +86,5 @@ TEST(MapRays, NothingBeyondTheVanishingLineOfASun) {
   EXPECT_FALSE(rays.At(1.5, 0.0).has_value());  // X = (1.5, 0, -0.5)
 }
 
-TEST(RenderShadowMap, DistancesToAPlaneAreExact) {
-  Scene scene;
-  testing::AddFloor(1e4, &scene);
-  const RayCaster caster = testing::Caster(scene);
-  Random random(53);
-  for (int i = 0; i < 10; ++i) {
-    MapCase map = RandomMap(random, i % 2 == 0);
-    if (map.light.kind == Light::Kind::kPoint && map.light.position.z() < 1.0) continue;
-    const MapSize size = {16, 12};
-    const ShadowMap shadow_map = RenderShadowMap(caster, map.light, map.map_from_ray, size);
-    ASSERT_EQ(shadow_map.distance.size(), 192u);
-    const MapRays rays(map.light, map.map_from_ray, caster.bounds());
-    for (int row = 0; row < 12; ++row) {
-      for (int column = 0; column < 16; ++column) {
-        const double distance = shadow_map.distance[16 * row + column];
-        if (std::isinf(distance)) continue;
-        const std::optional<Ray> ray = rays.At(column + 0.5, row + 0.5);
-        ASSERT_TRUE(ray.has_value());
-        const double expected = -ray->origin.z() / ray->direction.z();
-        EXPECT_NEAR(distance, expected, 1e-9 * expected);
-      }
-    }
-  }
-}
-
-TEST(RenderShadowMap, RendersWantedTexelsOnly) {
-  Scene scene;
-  testing::AddFloor(10.0, &scene);
-  const RayCaster caster = testing::Caster(scene);
-  const Light light = Light::Directional("sun", {0, 0, -1});
-  const MapSize size = {4, 4};
-  const ShadowMap all = RenderShadowMap(caster, light, Eigen::Matrix3d::Identity(), size);
-  std::vector<uint8_t> wanted(16, 0);
-  wanted[5] = 1;
-  const ShadowMap one = RenderShadowMap(caster, light, Eigen::Matrix3d::Identity(), size, wanted);
-  for (int i = 0; i < 16; ++i) {
-    EXPECT_TRUE(std::isfinite(all.distance[i]));
-    if (i == 5) {
-      EXPECT_EQ(one.distance[i], all.distance[i]);
-    } else {
-      EXPECT_TRUE(std::isinf(one.distance[i]));
-    }
-  }
-}
-
 }  // namespace
 }  // namespace lightfit

@@ -23,15 +23,12 @@ void Exec(const std::string& program,
   argv.push_back(nullptr);
   if (std::freopen(out_path.c_str(), "w", stdout) != nullptr &&
       std::freopen(err_path.c_str(), "w", stderr) != nullptr) {
-    execv(program.c_str(), argv.data());
+    execvp(program.c_str(), argv.data());
   }
   _exit(126);
 }
 
-}  // namespace
-
-ProcessResult RunProgram(const std::string& name, const std::vector<std::string>& arguments) {
-  const std::string program = std::string(LIGHTFIT_BIN_DIR) + "/" + name;
+ProcessResult Run(const std::string& program, const std::vector<std::string>& arguments) {
   const TemporaryFolder folder;
   const std::string out_path = folder.Path("out"), err_path = folder.Path("err");
   ProcessResult result;
@@ -50,6 +47,16 @@ ProcessResult RunProgram(const std::string& name, const std::vector<std::string>
   result.out = ReadFile(out_path);
   result.err = ReadFile(err_path);
   return result;
+}
+
+}  // namespace
+
+ProcessResult RunProgram(const std::string& name, const std::vector<std::string>& arguments) {
+  return Run(std::string(LIGHTFIT_BIN_DIR) + "/" + name, arguments);
+}
+
+ProcessResult RunInstalled(const std::string& name, const std::vector<std::string>& arguments) {
+  return Run(name, arguments);
 }
 
 ProcessResult RunLightfit(const std::vector<std::string>& arguments) {

@@ -1,6 +1,7 @@
 // tests/testing/process.h
 //
-// Runs a real program of this build and catches what it says; files and folders for tests.
+// Runs a real program, of this build or installed, and catches what it says; files and folders for
+// tests.
 #pragma once
 
 #include <string>
@@ -17,6 +18,9 @@ struct ProcessResult {
 // Runs bin/NAME of the build with these arguments, without a shell, and waits for its end. It must
 // have been built: lightfit_tests(... PROGRAMS NAME).
 ProcessResult RunProgram(const std::string& name, const std::vector<std::string>& arguments);
+
+// The same for a program that is installed, found as a shell does. Exit code 126: there is none.
+ProcessResult RunInstalled(const std::string& name, const std::vector<std::string>& arguments);
 
 // The same for bin/lightfit.
 ProcessResult RunLightfit(const std::vector<std::string>& arguments);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lightfit/optimizer/fit.h"
+#include "lightfit/partition/fit_plan.h"
 
 int main() {
   constexpr int kSize = 32;
@@ -24,7 +25,14 @@ int main() {
       lightfit::FitLight({*camera, depth, lightfit::DepthKind::kCameraZ, shadow_bits}, sun, map);
   std::printf("fit: %s\n", fit.ok() ? "OK" : fit.status().ToString().c_str());
 
+  const lightfit::Readback readback = {*camera, depth, lightfit::DepthKind::kCameraZ, shadow_bits};
+  const auto surfaces = lightfit::FindSurfaces(readback, 1u << sun.shadow_bit, {});
+  lightfit::PlanOptions options;
+  options.max_maps = 2;
+  const auto plan = lightfit::FitPlan(*surfaces, sun, options);
+  std::printf("plan: %s\n", plan.ok() ? "OK" : plan.status().ToString().c_str());
+
   const auto empty = lightfit::FitLight(lightfit::Readback(), sun, map);
   std::printf("empty read-back: %s\n", empty.status().ToString().c_str());
-  return fit.ok() && fit->map_from_world.allFinite() && !empty.ok() ? 0 : 1;
+  return fit.ok() && fit->map_from_world.allFinite() && plan.ok() && !empty.ok() ? 0 : 1;
 }

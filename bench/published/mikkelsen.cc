@@ -1,4 +1,4 @@
-// bench/mikkelsen.cc : which of two maps serves the pixels, with a plane between them.
+// bench/published/mikkelsen.cc : which of two maps serves the pixels, with a plane between them.
 //
 // In:   the scenes of bench/scene_set.h, lights in turn over their cameras, two thirds suns and one
 //       third lamps; a budget of 400x400 texels; focused maps beside perspective and beside

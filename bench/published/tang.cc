@@ -1,4 +1,4 @@
-// bench/tang.cc : how many maps light-space partitions need, beside the paper's figures.
+// bench/published/tang.cc : how many maps light-space partitions need, beside the paper's figures.
 //
 // In:   the scenes of bench/scene_set.h. In each a viewer (1440x1080 pixels, 60 degrees) goes once
 //       around the scene's views, along straight lines from one to the next, and swings its gaze to

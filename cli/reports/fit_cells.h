@@ -1,0 +1,24 @@
+// cli/reports/fit_cells.h
+//
+// What the tables of `lightfit fit` have in common: cells, and words about borders.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "jobs/fit_comparison.h"
+
+namespace lightfit::cli {
+
+inline constexpr char kNoMatrix[] = "no matrix, see below";
+
+// Per cent of the image's pixels foretold to be wrong; "-" without a map.
+std::string WrongText(const absl::StatusOr<JudgedMatrix>& map);
+
+// "1.86x": how many times as many wrong pixels `before` has as the answer; "same" where the
+// forecast cannot tell, "-" where there is nothing to compare.
+std::string RatioText(const absl::StatusOr<JudgedMatrix>& before, const Figures& answer);
+
+bool HasDarkBorder(const std::vector<FitComparison>& comparisons);
+
+}  // namespace lightfit::cli

@@ -1,0 +1,79 @@
+// A frame loop's plans take nothing from the heap once their pool has seen the work.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "base/scratch.h"
+#include "partition/fit_plan.h"
+#include "partition/plan_tracker.h"
+#include "tests/partition/plan_walk.h"
+#include "tests/testing/allocation_counter.h"
+#include "tests/testing/test_scene.h"
+
+namespace lightfit {
+namespace {
+
+using testing::NumAllocations;
+using testing::PlanWalk;
+using testing::TestScene;
+
+TEST(FitPlan, AllocatesNothingFromAWarmPool) {
+  constexpr int kNumRounds = 4;
+  for (const uint64_t seed : {1}) {
+    std::printf("[   seed   ] %d\n", static_cast<int>(seed));
+    const TestScene scene(seed, 3, 96, 64);
+    const Readback readback = scene.readback.ViewWithFacing();
+    PlanOptions options;
+    options.max_maps = 4;
+    for (const bool choose : {false, true}) {
+      options.choose_by_forecast = choose;
+      ScratchPool pool;
+      for (int round = 0; round < kNumRounds; ++round) {
+        const ScratchScope scope(&pool);
+        const int64_t before = NumAllocations();
+        const auto surfaces = FindSurfaces(readback, 0x7, options.fit.samples);
+        for (const Light& light : scene.lights) {
+          const auto plan = FitPlan(*surfaces, light, options);
+          ASSERT_TRUE(plan.ok());  // a matcher would allocate
+        }
+        if (round > 1) {
+          EXPECT_EQ(NumAllocations() - before, 0) << "seed " << seed << ", round " << round;
+        }
+      }
+    }
+  }
+}
+
+// As long as maps are kept or moved: a fit that is tried and fails says why, in a message.
+TEST(PlanTracker, AllocatesNothingFromAWarmPoolWhileMapsAreKept) {
+  constexpr int kNumRounds = 3;
+  const PlanWalk walk(1, 6, 0.1);
+  PlanTrackerOptions options = PlanTrackerOptions::ForStability(0.5);
+  options.plan.max_maps = 4;
+  options.plan.texels = int64_t{200} * 200;
+  options.plan.choose_by_forecast = false;
+  int num_kept = 0;
+  for (const Light& light : walk.lights) {
+    PlanTracker tracker(light, options);
+    ScratchPool pool;
+    for (int round = 0; round < kNumRounds; ++round) {
+      TrackedPlanState start;
+      start.light = light;
+      tracker.set_state(start);
+      for (const Surfaces& surfaces : walk.frames) {
+        const ScratchScope scope(&pool);
+        const int64_t before = NumAllocations();
+        const auto tracked = tracker.Update(surfaces);
+        const int64_t taken = NumAllocations() - before;
+        ASSERT_TRUE(tracked.ok());
+        if (round + 1 < kNumRounds || tracked->NumRedrawn() > 0) continue;
+        EXPECT_EQ(taken, 0) << light.name;
+        ++num_kept;
+      }
+    }
+  }
+  EXPECT_GT(num_kept, 5);
+}
+
+}  // namespace
+}  // namespace lightfit

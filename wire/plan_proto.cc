@@ -1,0 +1,126 @@
+#include "wire/plan_proto.h"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "geometry/homography.h"
+#include "wire/matrix_proto.h"
+#include "wire/result_json.h"
+
+namespace lightfit {
+
+namespace {
+
+void SetSize(MapSize size, v1::MapSize* proto) {
+  proto->set_width(size.width);
+  proto->set_height(size.height);
+}
+
+absl::Status Named(absl::string_view field, const absl::Status& status) {
+  return absl::Status(status.code(), absl::StrCat(field, ": ", status.message()));
+}
+
+}  // namespace
+
+absl::StatusOr<v1::Plan> PlanToProto(const LightPlan& plan,
+                                     const Light& light,
+                                     const ClipConvention& clip,
+                                     double guard_texels,
+                                     bool with_quantiles) {
+  v1::Plan proto;
+  proto.set_border(BorderToProto(plan.border));
+  proto.set_guard_texels(guard_texels);
+  proto.set_texels(NumTexels(PlanOf(plan)));
+  for (size_t k = 0; k < plan.maps.size(); ++k) {
+    const LightMatrix& map = plan.maps[k];
+    const absl::StatusOr<Eigen::Matrix3d> map_from_ray = MapFromRay(map.map_from_world, light);
+    if (!map_from_ray.ok()) return map_from_ray.status();
+    v1::PlanMap& added = *proto.add_maps();
+    added.set_index(static_cast<int>(k));
+    SetSize(map.map, added.mutable_map());
+    *added.mutable_map_from_world() = MatrixToProto(map.map_from_world);
+    *added.mutable_clip_from_world() =
+        MatrixToProto(ClipFromMap(map.map, clip) * map.map_from_world);
+    added.set_coarseness(1.0 / std::cbrt(std::abs(map_from_ray->determinant())));  // math.md (18)
+    added.set_energy(map.figures.energy);
+    *added.mutable_footprint() = FootprintToProto(map.figures.footprint, with_quantiles);
+    added.set_samples(map.figures.samples.used);
+  }
+  return proto;
+}
+
+absl::StatusOr<Plan> PlanFromProto(const v1::Plan& proto, absl::string_view field) {
+  if (proto.maps_size() < 1 || proto.maps_size() > kMaxPlanMaps) {
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "%s.maps: %d of them, want 1 ... %d", field, proto.maps_size(), kMaxPlanMaps));
+  }
+  const absl::StatusOr<Border> border =
+      BorderFromProto(proto.border(), absl::StrCat(field, ".border"));
+  if (!border.ok()) return border.status();
+  Plan plan;
+  plan.border = *border;
+  for (int k = 0; k < proto.maps_size(); ++k) {
+    const v1::PlanMap& map = proto.maps(k);
+    const std::string of_map = absl::StrCat(field, ".maps[", k, "]");
+    if (map.index() != k) {
+      return absl::InvalidArgumentError(
+          absl::StrFormat("%s.index = %d, want %d, its place", of_map, map.index(), k));
+    }
+    PlanMap& added = plan.maps.emplace_back();
+    added.size = {map.map().width(), map.map().height()};
+    if (absl::Status status = ValidateMapSize(added.size); !status.ok()) {
+      return Named(of_map, status);
+    }
+    const absl::StatusOr<Eigen::Matrix4d> map_from_world =
+        MatrixFromProto(map.map_from_world(), absl::StrCat(of_map, ".map_from_world"));
+    if (!map_from_world.ok()) return map_from_world.status();
+    added.map_from_world = *map_from_world;
+  }
+  return plan;
+}
+
+absl::Status CheckHasOneMap(const v1::LightResult& light) {
+  if (light.plan().maps_size() <= 1) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrFormat(
+      "light \"%s\": has a plan of %d maps, and plans cannot be given yet; want one "
+      "matrix, as lightfit fit finds without --maps",
+      light.name(),
+      light.plan().maps_size()));
+}
+
+v1::PlanOptions PlanOptionsToProto(const PlanOptions& options) {
+  v1::PlanOptions proto;
+  proto.set_max_maps(options.max_maps);
+  if (options.each.has_value()) {
+    SetSize(*options.each, proto.mutable_each());
+  } else {
+    proto.set_texels(options.texels);
+  }
+  proto.set_guard_texels(options.guard_texels);
+  proto.set_choose_by_forecast(options.choose_by_forecast);
+  return proto;
+}
+
+absl::StatusOr<PlanOptions> PlanOptionsFromProto(const v1::PlanOptions& proto,
+                                                 const FitOptions& fit) {
+  PlanOptions options;
+  options.fit = fit;
+  options.max_maps = proto.max_maps();
+  options.guard_texels = proto.guard_texels();
+  options.choose_by_forecast = proto.choose_by_forecast();
+  if (proto.has_each()) {
+    options.each = MapSize{proto.each().width(), proto.each().height()};
+  } else {
+    options.texels = proto.texels();
+  }
+  if (absl::Status status = ValidatePlanOptions(options); !status.ok()) {
+    return Named("plan_options", status);
+  }
+  return options;
+}
+
+}  // namespace lightfit
