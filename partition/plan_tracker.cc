@@ -20,7 +20,7 @@ PlanTrackerOptions PlanTrackerOptions::ForStability(double stability) {
   PlanTrackerOptions options;
   options.tolerance = stability;
   options.update_every_frames = stability > 0.0 ? 3 : 1;
-  options.cover_margin_percent = 20.0 * stability * stability;
+  options.cover_margin_percent = 10.0 * stability * stability;
   return options;
 }
 

@@ -42,9 +42,11 @@ struct PlanTrackerOptions {
 
   // Maps that are fitted anew make room: on every side by this share of what they must hold, in
   // percent, on top of plan.fit.margin_percent. >= 0.
-  double cover_margin_percent = 5.0;
+  double cover_margin_percent = 2.5;
 
-  // All of the above but `plan` from one number, 0 ... 1, as TrackerOptions::ForStability().
+  // All of the above but `plan` from one number, 0 ... 1: docs/sequences.md has the price of each.
+  // As TrackerOptions::ForStability(), with half the room: a map has less to lose than the only
+  // one.
   static PlanTrackerOptions ForStability(double stability);
 };
 
