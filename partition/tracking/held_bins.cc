@@ -1,4 +1,4 @@
-#include "partition/held_bins.h"
+#include "partition/tracking/held_bins.h"
 
 #include <algorithm>
 #include <bit>
