@@ -14,6 +14,7 @@ struct CallLimits {
   // Of one read-back, at the borders of shadows and, where that is known, of surfaces that face a
   // light: each takes some 250 bytes while lights are fitted.
   int64_t max_boundary_pixels = int64_t{1} << 20;
+  int max_maps = 32;         // PlanOptions.max_maps; what a plan takes of time grows with it
   int max_matrices = 1024;   // EvaluateRequest.matrices
   int max_summaries = 4096;  // summaries and summary_files together
 };
