@@ -115,6 +115,7 @@ def test_the_look_up_is_that_of_the_fit(guard: float) -> None:
         differs = is_blocked[:, 1:] != is_blocked[:, :-1]
         edges[:, 1:] |= differs
         edges[:, :-1] |= differs
+        edges[[0, -1]] = edges[:, [0, -1]] = False  # have no neighbours to tell the surface by
         assert light.samples.used == edges.sum()
         counts = [int((asked[edges] == part.index).sum()) for part in light.plan.maps]
         assert counts == [part.samples for part in light.plan.maps] and min(counts) > 0
@@ -144,7 +145,7 @@ def test_each_map_of_a_tracked_plan_is_kept_by_itself(client: Any, arguments: An
         tolerance=0.5, update_every_frames=3, cover_margin_percent=2.5
     )
     with lightfit.track_plan(PLAN, tracker=settings) as here, client.track_plan(PLAN) as there:
-        for number in range(4):
+        for number in range(3):
             shadow = numpy.roll(arguments[1], number, axis=1)
             result = here.update(number, arguments[0], shadow, *arguments[2:])
             answer = there.update(number, arguments[0], shadow, *arguments[2:])
@@ -156,9 +157,9 @@ def test_each_map_of_a_tracked_plan_is_kept_by_itself(client: Any, arguments: An
             assert (number == 0) == all(part.action == "FIRST" for part in plan.maps)
             assert number == 0 or any(kept)
         state = here.state
-        after = here.update(4, *arguments)
+        after = here.update(3, *arguments)
     with lightfit.track_plan(PLAN, state=state) as again:
-        assert again.update(4, *arguments).message == after.message
+        assert again.update(3, *arguments).message == after.message
 
 
 def test_a_tracked_plan_goes_on_at_another_server(has_serve: None, arguments: Any) -> None:
