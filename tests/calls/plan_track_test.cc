@@ -12,6 +12,7 @@
 #include "partition/plan_tracker.h"
 #include "tests/calls/requests.h"
 #include "tests/io/summary_examples.h"
+#include "tests/testing/plane_readback.h"
 #include "wire/plan_proto.h"
 #include "wire/shot_proto.h"
 
@@ -205,6 +206,32 @@ TEST(PlanTrack, RefusesSetupsThatMakeNoSense) {
   context.limits.max_maps = kMaxMaps - 1;
   EXPECT_EQ(TrackSession::Begin(SetupFor(0.5), context.limits).status().code(),
             absl::StatusCode::kResourceExhausted);
+}
+
+// What another server is said to have remembered may be anything.
+TEST(PlanTrack, SurvivesWhateverStateComesIn) {
+  testing::PlaneReadback floor = testing::FloorReadback();
+  floor.Cast(0, [](int x, int y) { return x > 12 && x < 25 && y > 8 && y < 20; });
+  const std::vector<Light> lights = {Light::Point("lamp", {1.0, 2.0, 5.0}, 0)};
+  const auto frame = testing::RequestOf<v1::TrackFrame>(floor.View(), lights);
+  const auto begin = [&](const v1::TrackSetup& setup, const CallContext& context) {
+    absl::StatusOr<TrackSession> session = TrackSession::Begin(setup, context.limits);
+    if (!session.ok()) return absl::StatusOr<v1::TrackResult>(session.status());
+    return absl::StatusOr<v1::TrackResult>(session->Update(frame, floor.View(), {}));
+  };
+  v1::TrackSetup setup = SetupFor(0.5);
+  setup.mutable_plan_options()->set_texels(4096);
+  const absl::StatusOr<v1::TrackResult> first = begin(setup, CallContext());
+  ASSERT_THAT(first, testing::IsOk());
+  *setup.mutable_state() = first->result().shot().tracker_state();
+  ASSERT_EQ(setup.state_size(), 1);
+  testing::ExpectSurvivesMutations(
+      setup,
+      [&](const v1::TrackSetup& mutated, CallContext context) {
+        context.limits.max_maps = kMaxMaps + 1;  // 32 are more work, and no more to survive
+        return begin(mutated, context);
+      },
+      300);
 }
 
 // A matrix that is none of the light's is no plan to go on from.
