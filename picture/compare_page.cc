@@ -96,11 +96,10 @@ class Page {
     Text(
         kMargin,
         kMargin + 44,
-        absl::StrFormat("screen %d x %d pixels, shadow map %d x %d texels; %s%s",
+        absl::StrFormat("screen %d x %d pixels, %s; %s%s",
                         camera.width,
                         camera.height,
-                        options_.map.width,
-                        options_.map.height,
+                        options_.maps,
                         options_.bias == Bias::kIdeal ? "ideal bias: sampling error alone"
                                                       : "practical bias, as in a renderer",
                         options_.phases > 1
@@ -122,7 +121,7 @@ class Page {
     ++cell_;
   }
 
-  void DrawMap(const ComparedMap& map) {
+  void DrawMap(const ComparedRow& map) {
     const bool is_ours = &map == &light_.lightfit();
     if (!HasImage(map)) {
       Header(map.name, "no matrix", kWarningColor);
@@ -140,7 +139,7 @@ class Page {
     }
     const int64_t count = CountOf(map, options_.bias);
     std::string caption = absl::StrCat(count, count == 1 ? " wrong pixel" : " wrong pixels");
-    if (map.border == Border::kDark) caption += ", dark border";
+    if (map.border() == Border::kDark) caption += ", dark border";
     if (!is_ours && HasImage(light_.lightfit())) {
       const std::optional<double> ratio =
           RatioOf(static_cast<double>(count),
@@ -153,10 +152,10 @@ class Page {
   }
 
   // In a cell that no method needs: how many wrong pixels each has.
-  void DrawBars(const std::vector<const ComparedMap*>& maps) {
+  void DrawBars(const std::vector<const ComparedRow*>& maps) {
     if (cell_ >= layout_.columns * layout_.rows) return;
     std::vector<Bar> bars;
-    for (const ComparedMap* map : maps) {
+    for (const ComparedRow* map : maps) {
       if (!HasImage(*map)) continue;
       const Rgb color = map == &light_.lightfit() ? kGainColor : kReceiverColor;
       bars.push_back({map->name, CountOf(*map, options_.bias), color});
@@ -171,7 +170,7 @@ class Page {
     int x = kMargin;
     const int y = layout_.height() - kLegendHeight + 12;
     canvas_.FillRectangle(kMargin, y - 14, layout_.width() - 2 * kMargin, 1, kRuleColor);
-    const ComparedMap* rival = Rival(light_, options_.bias);
+    const ComparedRow* rival = Rival(light_, options_.bias);
     const std::string crop =
         absl::StrFormat("crop, %d times enlarged: where %s and lightfit differ most",
                         layout_.crop_factor,
@@ -243,13 +242,13 @@ Canvas DrawComparePicture(const CompareStage& stage,
                           const ComparePictureOptions& options,
                           const Typeface& typeface) {
   const Camera& camera = stage.screen.camera;
-  Layout layout = LayoutFor(camera.width, camera.height, static_cast<int>(light.maps.size()) + 1);
+  Layout layout = LayoutFor(camera.width, camera.height, static_cast<int>(light.rows.size()) + 1);
   layout.crop = ChooseCrop(light, options.bias, camera.width, camera.height, layout.crop);
   Page page(stage, light, options, layout, typeface);
   page.DrawTitle();
   page.DrawTruth();
-  const std::vector<const ComparedMap*> maps = InOrder(light, options.bias);
-  for (const ComparedMap* map : maps) page.DrawMap(*map);
+  const std::vector<const ComparedRow*> maps = InOrder(light, options.bias);
+  for (const ComparedRow* map : maps) page.DrawMap(*map);
   page.DrawBars(maps);
   page.DrawLegend();
   return page.TakeCanvas();

@@ -6,7 +6,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "cli/flags/allocate_flags.h"
-#include "cli/flags/fit_flags.h"
 #include "optimizer/sizing/map_sizes.h"
 #include "partition/plan.h"
 
@@ -30,7 +29,8 @@ constexpr Unused kUnusedByPlans[] = {
 
 }  // namespace
 
-void DeclarePlanFlags(CLI::App* app, PlanFlags* flags) {
+void DeclarePlanFlags(CLI::App* app, MapSize one_map, PlanFlags* flags) {
+  flags->texels = TexelsOf(one_map);
   app->add_option(
          "--maps",
          flags->max_maps,
@@ -49,9 +49,13 @@ void DeclarePlanFlags(CLI::App* app, PlanFlags* flags) {
            }
            flags->texels = *texels;
          },
-         "With --maps: texels of all maps of one light together, as a size or a number; never "
-         "more, "
-         "and sizes may differ [1024x1024, as one map has]")
+         absl::StrCat(
+             "With --maps: texels of all maps of one light together, as a size or a number; "
+             "never more, and sizes may differ [",
+             one_map.width,
+             "x",
+             one_map.height,
+             ", as one map has]"))
       ->type_name("WIDTHxHEIGHT|TEXELS")
       ->group(kGroup);
   app->add_option("--guard",
@@ -63,8 +67,8 @@ void DeclarePlanFlags(CLI::App* app, PlanFlags* flags) {
       ->group(kGroup);
 }
 
-void CheckPlanFlags(const CLI::App& app, FitFlags* flags) {
-  if (flags->plan.max_maps == 1) {
+void CheckPlanFlags(const CLI::App& app, MapSize map, PlanFlags* flags) {
+  if (flags->max_maps == 1) {
     for (const char* flag : {"--texels", "--guard"}) {
       if (app.count(flag) == 0) continue;
       throw CLI::ValidationError(
@@ -73,35 +77,36 @@ void CheckPlanFlags(const CLI::App& app, FitFlags* flags) {
     return;
   }
   for (const Unused& unused : kUnusedByPlans) {
-    if (app.count(unused.flag) == 0) continue;
+    const CLI::Option* option = app.get_option_no_throw(unused.flag);
+    if (option == nullptr || option->count() == 0) continue;
     throw CLI::ValidationError("--maps",
                                absl::StrCat("does not go with ", unused.flag, ": ", unused.reason));
   }
   if (app.count("--map") == 0) return;
-  if (flags->plan.texels.has_value()) {
+  if (app.count("--texels") > 0) {
     throw CLI::ValidationError("--texels",
                                "is what all maps of a light have together, and --map the size of "
                                "each: give one of the two");
   }
-  flags->plan.each = flags->map;
-  if (2.0 * flags->plan.guard_texels < std::min(flags->map.width, flags->map.height)) return;
+  flags->each = map;
+  if (2.0 * flags->guard_texels < std::min(map.width, map.height)) return;
   throw CLI::ValidationError("--guard",
-                             absl::StrCat(flags->plan.guard_texels,
+                             absl::StrCat(flags->guard_texels,
                                           " on every side leaves nothing of maps of --map ",
-                                          flags->map.width,
+                                          map.width,
                                           "x",
-                                          flags->map.height,
+                                          map.height,
                                           " texels"));
 }
 
-std::optional<PlanOptions> PlanOptionsOf(const FitFlags& flags) {
-  if (flags.plan.max_maps == 1) return std::nullopt;
+std::optional<PlanOptions> PlanOptionsOf(const PlanFlags& flags, const FitOptions& fit) {
+  if (flags.max_maps == 1) return std::nullopt;
   PlanOptions options;
-  options.fit = flags.options;
-  options.max_maps = flags.plan.max_maps;
-  options.texels = flags.plan.texels.value_or(TexelsOf(FitFlags().map));
-  options.each = flags.plan.each;
-  options.guard_texels = flags.plan.guard_texels;
+  options.fit = fit;
+  options.max_maps = flags.max_maps;
+  options.texels = flags.texels;
+  options.each = flags.each;
+  options.guard_texels = flags.guard_texels;
   return options;
 }
 

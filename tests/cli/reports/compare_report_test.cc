@@ -20,7 +20,7 @@ CompareHeading Heading() {
   CompareHeading heading;
   heading.source = "scene.glb";
   heading.screen_width = heading.screen_height = 750;
-  heading.map = {400, 400};
+  heading.maps = "map 400 x 400 texels";
   return heading;
 }
 
@@ -56,7 +56,7 @@ TEST(CompareReport, CrawlHasColumnsOnlyWhereItIsMeasured) {
   crawl.points.num_points = 900;
   crawl.points.phase_drift_texels = 0.25;
   crawl.flicker = Flicker{200, 3, 4};
-  lights[0].maps[0].crawl = crawl;
+  lights[0].rows[0].crawl = crawl;
   CompareHeading heading = Heading();
   heading.next = "frame 7 of cameras.json";
   const std::string text = CompareReportText(heading, lights, false);
@@ -67,7 +67,7 @@ TEST(CompareReport, CrawlHasColumnsOnlyWhereItIsMeasured) {
   EXPECT_THAT(text, HasSubstr("Flips: "));
 
   lights.push_back(lights[0]);
-  lights[0].maps[1].crawl = lights[1].maps[1].crawl = crawl;
+  lights[0].rows[1].crawl = lights[1].rows[1].crawl = crawl;
   EXPECT_THAT(CompareReportText(heading, lights, false), HasSubstr("   0.250       -     1.50"));
 
   heading.screen_width = 0;
@@ -91,7 +91,7 @@ TEST(CompareReport, SaysThatCountsAreMeans) {
 TEST(CompareReport, ShowsBordersWhereAnyIsDark) {
   std::vector<LightComparison> lights = ThreeLights();
   EXPECT_THAT(CompareReportText(Heading(), lights, true), Not(HasSubstr("dark")));
-  lights[0].maps[1].border = Border::kDark;
+  std::get<Plan>(lights[0].rows[1].drawn.maps).border = Border::kDark;
   const std::string one = CompareReportText(Heading(), {lights[0]}, false);
   EXPECT_THAT(one, HasSubstr("method    border "));
   EXPECT_THAT(one, HasSubstr("focused      lit "));
