@@ -124,8 +124,11 @@ absl::Status WritePicture(const CompareFlags& flags,
   options.keep_images = true;
   options.next = nullptr;
   const LightComparison comparison = CompareMaps(inputs.stage, inputs.lights[light], options);
-  const ComparePictureOptions picture = {
-      inputs.title, SizeText(inputs.options), options.judge.phases, flags.picture_bias};
+  const ComparePictureOptions picture = {inputs.title,
+                                         SizeText(options),
+                                         options.plan.has_value(),
+                                         options.judge.phases,
+                                         flags.picture_bias};
   return WritePng(DrawComparePicture(inputs.stage, comparison, picture, typeface),
                   flags.picture_path);
 }

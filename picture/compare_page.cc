@@ -9,6 +9,7 @@
 #include "absl/strings/str_format.h"
 #include "base/number.h"
 #include "jobs/compare/totals.h"
+#include "jobs/schemes/asked_maps.h"
 #include "picture/bar_chart.h"
 #include "picture/compare_choice.h"
 #include "picture/shadow_panel.h"
@@ -117,17 +118,17 @@ class Page {
         absl::StrCat(PercentText(judged > 0 ? static_cast<double>(counts.shadowed) / judged : 0.0),
                      " % of what faces the light in shadow"),
         kTextColor);
-    DrawShadows(light_.truth);
+    DrawShadows(light_.truth, {});
     ++cell_;
   }
 
-  void DrawMap(const ComparedRow& map) {
-    const bool is_ours = &map == &light_.lightfit();
-    if (!HasImage(map)) {
-      Header(map.name, "no matrix", kWarningColor);
+  void DrawRow(const ComparedRow& row) {
+    const bool is_ours = &row == &light_.lightfit();
+    if (!HasImage(row)) {
+      Header(row.name, options_.has_plans ? "no maps" : "no matrix", kWarningColor);
       canvas_.FillRectangle(X(), PanelY(), layout_.panel_width, layout_.panel_height, kPanelColor);
       int y = PanelY() + 30;
-      for (const std::string& line : typeface_.Wrapped(std::string(map.status.message()),
+      for (const std::string& line : typeface_.Wrapped(std::string(row.status.message()),
                                                        layout_.panel_width - 24,
                                                        {.size_px = kCaptionSize})) {
         if (y > PanelY() + layout_.panel_height) break;
@@ -137,17 +138,21 @@ class Page {
       ++cell_;
       return;
     }
-    const int64_t count = CountOf(map, options_.bias);
+    const int64_t count = CountOf(row, options_.bias);
     std::string caption = absl::StrCat(count, count == 1 ? " wrong pixel" : " wrong pixels");
-    if (map.border() == Border::kDark) caption += ", dark border";
+    const int num_maps = NumMaps(row.drawn);
+    if (num_maps > 1) absl::StrAppend(&caption, ", ", num_maps, " maps");
+    if (row.border() == Border::kDark) caption += ", dark border";
     if (!is_ours && HasImage(light_.lightfit())) {
       const std::optional<double> ratio =
           RatioOf(static_cast<double>(count),
                   static_cast<double>(CountOf(light_.lightfit(), options_.bias)));
       if (ratio.has_value()) absl::StrAppend(&caption, ", ", FigureText(*ratio), " x lightfit");
     }
-    Header(map.name, caption, is_ours ? kGainColor : kTextColor);
-    DrawShadows(ShadowsOf(map, options_.bias));
+    Header(row.name, caption, is_ours ? kGainColor : kTextColor);
+    DrawShadows(
+        ShadowsOf(row, options_.bias),
+        num_maps > 1 ? AskedMaps(row.drawn, light_.light, stage_.screen) : std::vector<int>());
     ++cell_;
   }
 
@@ -184,6 +189,11 @@ class Page {
       Text(x + 21, y + 15, text, style);
       x += 21 + typeface_.Width(text, style) + 30;
     }
+    if (!options_.has_plans) return;
+    Text(kMargin,
+         y + 37,
+         "tint: which of its maps a pixel asks; of pages, which level",
+         {.size_px = kCaptionSize, .color = kFaintTextColor});
   }
 
  private:
@@ -201,8 +211,9 @@ class Page {
     Text(X(), PanelY() - 11, caption, {.size_px = kCaptionSize, .color = kFaintTextColor});
   }
 
-  void DrawShadows(const std::vector<Lighting>& shadows) {
-    const Image full = ShadeShadows(stage_.screen, light_.light, light_.truth, shadows);
+  // Tinted by `asked`, where there are several maps.
+  void DrawShadows(const std::vector<Lighting>& shadows, const std::vector<int>& asked) {
+    const Image full = ShadeShadows(stage_.screen, light_.light, light_.truth, shadows, asked);
     const Image panel = layout_.magnified > 1
                             ? Magnified(full, layout_.magnified)
                             : ReducedPanel(full, WrongMask(light_.truth, shadows), layout_.reduced);
@@ -248,7 +259,7 @@ Canvas DrawComparePicture(const CompareStage& stage,
   page.DrawTitle();
   page.DrawTruth();
   const std::vector<const ComparedRow*> maps = InOrder(light, options.bias);
-  for (const ComparedRow* map : maps) page.DrawMap(*map);
+  for (const ComparedRow* map : maps) page.DrawRow(*map);
   page.DrawBars(maps);
   page.DrawLegend();
   return page.TakeCanvas();
