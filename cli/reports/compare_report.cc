@@ -46,15 +46,13 @@ constexpr char kFlipLegend[] =
     "the\n"
     "judged.\n";
 constexpr char kTotalLegend[] =
-    "Totals count the lights for which both the method and lightfit have a matrix. Ratio: of total "
+    "Totals count the lights for which both the method and lightfit have a map. Ratio: of total "
     "to\n"
     "lightfit's. Mean: geometric mean over the lights of (wrong + 1) / (wrong of lightfit + 1), "
-    "and "
-    "of\n"
+    "and of\n"
     "energy / energy of lightfit. Better: lights with fewer wrong pixels than lightfit. Failed: "
     "lights\n"
-    "without a matrix of the method.\n";
-
+    "without a map of the method.\n";
 constexpr char kPlanLegend[] =
     "Maps, texels: what the method draws for the light, at most the texels of one map in all. A "
     "pixel asks\n"

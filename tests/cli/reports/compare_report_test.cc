@@ -107,6 +107,29 @@ TEST(CompareReport, ShowsBordersWhereAnyIsDark) {
   EXPECT_THAT(CompareCsv(lights), HasSubstr(",lit,\n"));
 }
 
+TEST(CompareReport, PlansHaveColumnsOfTheirOwn) {
+  std::vector<LightComparison> lights = {OneLight(
+      "a", {Row("ZP4", 30, 40, 8), FailedRow("cube", "no way"), Row("lightfit", 10, 20, 2)})};
+  auto& plan = std::get<Plan>(lights[0].rows[0].drawn.maps);
+  plan.maps.resize(4);
+  for (PlanMap& map : plan.maps) map.size = {20, 10};
+  EXPECT_THAT(CompareReportText(Heading(), lights, false), Not(HasSubstr("texels  ")));
+  CompareHeading heading = Heading();
+  heading.has_plans = true;
+  heading.maps = "up to 4 maps for each light, 800 texels in all";
+  const std::string text = CompareReportText(heading, lights, false);
+  EXPECT_THAT(text, HasSubstr("; up to 4 maps for each light, 800 texels in all\n"));
+  EXPECT_THAT(text, HasSubstr("maps  texels "));
+  EXPECT_THAT(text, HasSubstr("ZP4          4     800 "));
+  EXPECT_THAT(text, HasSubstr("cube        no maps, see below"));
+  EXPECT_THAT(text, HasSubstr("\nMaps, texels: "));
+  lights.push_back(lights[0]);
+  lights[1].rows[0].drawn = SchemeMaps{ParaboloidPair()};
+  EXPECT_THAT(CompareReportText(heading, lights, false), HasSubstr("ZP4         3.00 "));
+  EXPECT_THAT(CompareCsv(lights), HasSubstr(",4,800,lit,\n"));
+  EXPECT_THAT(CompareCsv(lights), HasSubstr(",,,,no way\n"));
+}
+
 // Splits a line at the commas outside quotes.
 std::vector<std::string> Fields(const std::string& line) {
   std::vector<std::string> fields(1);
