@@ -101,6 +101,7 @@ class LightBench {
     const absl::StatusOr<Surfaces> large = FindSurfaces(large_view_.readback, 1, {});
     if (!large.ok()) return large.status();
     std::vector<Measured> measured;
+    measured.reserve(rows.size());
     for (const PlanRow& row : rows) {
       measured.push_back(MeasureRow(row, {stage_.view, row.from_large ? large : small, light_}));
     }

@@ -109,7 +109,10 @@ void SetSeveralMaps(const LightFit& fit, const FitReport& report, v1::LightResul
   proto->set_facing(FacingSourceToProto(fit.plan->plan.facing));
   proto->mutable_energies()->set_final(figures.energy);
   SetYardsticks(figures.energy, fit, proto->mutable_energies());
-  *proto->mutable_foretold_wrong() = ForetoldToProto(figures.wrong_share.value_or(0.0), fit);
+  if (figures.wrong_share) {
+    *proto->mutable_foretold_wrong() = ForetoldToProto(*figures.wrong_share, fit);
+  }
+  if (figures.samples.used == 0) return;  // of a whole shot: its frames have them
   *proto->mutable_footprint() =
       FootprintToProto(figures.footprint, report.options.compute_statistics);
   *proto->mutable_samples() = SampleCountsToProto(figures.samples);

@@ -91,4 +91,75 @@ absl::StatusOr<std::vector<TrackedState>> TrackedStatesFromProto(const v1::ShotI
   return states;
 }
 
+v1::PlanTrackerSettings PlanTrackerSettingsToProto(const PlanTrackerOptions& options) {
+  v1::PlanTrackerSettings proto;
+  proto.set_tolerance(options.tolerance);
+  proto.set_update_every_frames(options.update_every_frames);
+  proto.set_cover_margin_percent(options.cover_margin_percent);
+  return proto;
+}
+
+absl::StatusOr<PlanTrackerOptions> PlanTrackerSettingsFromProto(
+    const v1::PlanTrackerSettings& proto) {
+  PlanTrackerOptions options;
+  options.tolerance = proto.tolerance();
+  options.update_every_frames = proto.update_every_frames();
+  options.cover_margin_percent = proto.cover_margin_percent();
+  if (absl::Status status = ValidatePlanTrackerOptions(options); !status.ok()) return status;
+  return options;
+}
+
+v1::TrackedPlanState TrackedPlanStateToProto(const TrackedPlanState& state) {
+  v1::TrackedPlanState proto;
+  proto.set_light(state.light.name);
+  proto.set_border(BorderToProto(state.border));
+  proto.set_frames_since_update(state.frames_since_update);
+  for (const TrackedPlanState::Map& map : state.maps) {
+    v1::TrackedPlanMap& added = *proto.add_maps();
+    *added.mutable_map_from_world() = MatrixToProto(map.map_from_world);
+    added.set_width(map.size.width);
+    added.set_height(map.size.height);
+    added.set_frames_kept(map.frames_kept);
+  }
+  return proto;
+}
+
+absl::StatusOr<std::vector<TrackedPlanState>> TrackedPlanStatesFromProto(
+    const v1::ShotInfo& shot, absl::Span<const Light> lights) {
+  std::vector<TrackedPlanState> states;
+  for (const v1::TrackedPlanState& proto : shot.plan_tracker_state()) {
+    for (const Light& light : lights) {
+      if (light.name != proto.light()) continue;
+      TrackedPlanState state;
+      state.light = light;
+      const absl::StatusOr<Border> border =
+          BorderFromProto(proto.border(), "planTrackerState.border");
+      if (!border.ok()) return border.status();
+      state.border = *border;
+      state.frames_since_update = proto.frames_since_update();
+      for (const v1::TrackedPlanMap& map : proto.maps()) {
+        const absl::StatusOr<Eigen::Matrix4d> map_from_world =
+            MatrixFromProto(map.map_from_world(), "planTrackerState.maps.mapFromWorld");
+        if (!map_from_world.ok()) return map_from_world.status();
+        const MapSize size = {map.width(), map.height()};
+        if (absl::Status status = ValidateMapSize(size); !status.ok()) return status;
+        state.maps.push_back({*map_from_world, size, map.frames_kept()});
+      }
+      states.push_back(std::move(state));
+    }
+  }
+  return states;
+}
+
+v1::TrackedPlanChange TrackedPlanChangeToProto(const TrackedPlan& tracked) {
+  v1::TrackedPlanChange proto;
+  proto.set_is_new(tracked.is_new);
+  for (size_t k = 0; k < tracked.actions.size(); ++k) {
+    v1::TrackedMapChange& map = *proto.add_maps();
+    map.set_action(TrackerActionToProto(tracked.actions[k]));
+    map.set_frames_kept(tracked.frames_kept[k]);
+  }
+  return proto;
+}
+
 }  // namespace lightfit

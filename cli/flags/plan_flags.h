@@ -1,6 +1,6 @@
 // cli/flags/plan_flags.h
 //
-// The options of `lightfit fit` and `compare` about several maps for one light.
+// The options of `lightfit fit`, `shot` and `compare` about several maps for one light.
 // In:   words; those that do not go together are refused while parsing (exit code 1).
 // Out:  PlanFlags, and with the options of the fit PlanOptions.
 #pragma once

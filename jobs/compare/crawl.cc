@@ -6,7 +6,7 @@
 
 #include "jobs/schemes/judge_maps.h"
 #include "optimizer/figures/stability.h"
-#include "partition/plan_crawl.h"
+#include "partition/tracking/plan_crawl.h"
 
 namespace lightfit {
 namespace {

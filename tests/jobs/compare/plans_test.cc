@@ -13,7 +13,7 @@
 #include "jobs/fit_comparison.h"
 #include "partition/evaluate_plan.h"
 #include "partition/fit_plan.h"
-#include "partition/plan_crawl.h"
+#include "partition/tracking/plan_crawl.h"
 #include "render/judge_plan.h"
 #include "render/readback_image.h"
 #include "tests/jobs/compare/compare_scene.h"
