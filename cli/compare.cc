@@ -14,6 +14,7 @@
 #include "base/text_file.h"
 #include "cli/compare_inputs.h"
 #include "cli/exit_code.h"
+#include "cli/reports/compare_csv.h"
 #include "cli/reports/compare_report.h"
 #include "cli/reports/fit_report.h"
 #include "cli/reports/plan_report.h"

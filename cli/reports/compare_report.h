@@ -1,6 +1,6 @@
 // cli/reports/compare_report.h
 //
-// A comparison in words and figures: for the terminal, and as comma-separated values.
+// A comparison in words and figures, for the terminal.
 #pragma once
 
 #include <string>
@@ -31,8 +31,5 @@ struct CompareHeading {
 std::string CompareReportText(const CompareHeading& heading,
                               absl::Span<const LightComparison> lights,
                               bool per_light);
-
-// A line of names, then one line for each light and method. Empty fields where there is no figure.
-std::string CompareCsv(absl::Span<const LightComparison> lights);
 
 }  // namespace lightfit::cli
