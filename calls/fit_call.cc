@@ -1,5 +1,6 @@
 #include "calls/fit_call.h"
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -9,6 +10,8 @@
 #include "calls/request_fields.h"
 #include "calls/request_lights.h"
 #include "calls/request_options.h"
+#include "calls/request_plans.h"
+#include "jobs/plan_advice.h"
 #include "optimizer/figures/foretell.h"
 #include "optimizer/fit.h"
 #include "wire/result_json.h"
@@ -16,31 +19,51 @@
 namespace lightfit {
 namespace {
 
-// Fits the lights that can be used, all at once; the others keep their status.
+LightFit MatrixFitOf(const RequestLight& light,
+                     const Surfaces& surfaces,
+                     MapSize map,
+                     const FitOptions& options,
+                     bool foretells) {
+  LightFit fit;
+  fit.light = light.light;
+  fit.matrix = FitLight(surfaces, light.light, map, options);
+  if (!fit.matrix.ok()) {
+    fit.matrix = WithNumMaps(
+        fit.matrix.status(), surfaces, light.light, map, options, "plan_options.max_maps");
+    return fit;
+  }
+  if (!foretells) return fit;
+  const absl::StatusOr<double> wrong_share = ForetellWrongShare(surfaces.readback,
+                                                                light.light,
+                                                                fit.matrix->map_from_world,
+                                                                map,
+                                                                options.samples,
+                                                                fit.matrix->border);
+  if (wrong_share.ok()) fit.wrong_share = *wrong_share;
+  return fit;
+}
+
+// Of each light what `fit_of` says; those that cannot be used keep their status.
+template <typename FitOf>
 std::vector<LightFit> FitRequestLights(const std::vector<RequestLight>& lights,
                                        const Readback& readback,
-                                       MapSize map,
                                        const FitOptions& options,
-                                       bool foretells) {
+                                       const FitOf& fit_of) {
   std::vector<Light> usable;
   for (const RequestLight& light : lights) {
     if (light.status.ok()) usable.push_back(light.light);
   }
-  LightMatrices matrices = FitLights(readback, usable, map, options);
+  const absl::StatusOr<Surfaces> surfaces =
+      FindSurfaces(readback, LightMask(usable), options.samples);
   std::vector<LightFit> fits;
-  size_t next = 0;
   for (const RequestLight& light : lights) {
-    LightFit& fit = fits.emplace_back();
-    fit.light = light.light;
-    fit.matrix = light.status.ok() ? std::move(matrices[next++]) : light.status;
-    if (!foretells || !fit.matrix.ok()) continue;
-    const absl::StatusOr<double> wrong_share = ForetellWrongShare(readback,
-                                                                  light.light,
-                                                                  fit.matrix->map_from_world,
-                                                                  map,
-                                                                  options.samples,
-                                                                  fit.matrix->border);
-    if (wrong_share.ok()) fit.wrong_share = *wrong_share;
+    const absl::Status& status = light.status.ok() ? surfaces.status() : light.status;
+    if (status.ok()) {
+      fits.push_back(fit_of(light, *surfaces));
+    } else {
+      fits.emplace_back().light = light.light;
+      fits.back().matrix = status;
+    }
   }
   return fits;
 }
@@ -62,7 +85,11 @@ absl::StatusOr<v1::FitResult> AnswerFit(const v1::FitRequest& request,
   if (!lights.ok()) return lights.status();
   const absl::StatusOr<FitOptions> options = OptionsOfRequest(request.options());
   if (!options.ok()) return options.status();
-  const absl::StatusOr<MapSize> map = MapSizeOfRequest(request.map(), *options);
+  const absl::StatusOr<std::optional<PlanOptions>> plan =
+      PlanOptionsOfRequest(request, *options, context.limits);
+  if (!plan.ok()) return plan.status();
+  absl::StatusOr<MapSize> map = MapSize();
+  if (!plan->has_value()) map = MapSizeOfRequest(request.map(), *options);
   if (!map.ok()) return map.status();
   const absl::StatusOr<ClipConvention> clip = ClipOfRequest(request);
   if (!clip.ok()) return clip.status();
@@ -73,9 +100,15 @@ absl::StatusOr<v1::FitResult> AnswerFit(const v1::FitRequest& request,
   report.camera = readback.camera;
   report.depth_kind = readback.depth_kind;
   report.options = *options;
+  report.plan_options = *plan;
   report.map = *map;
   report.clip = *clip;
-  report.lights = FitRequestLights(*lights, readback, *map, *options, request.foretell_wrong());
+  report.lights = FitRequestLights(
+      *lights, readback, *options, [&](const RequestLight& light, const Surfaces& surfaces) {
+        const bool foretells = request.foretell_wrong();
+        return plan->has_value() ? PlanFitOf(light, surfaces, **plan, foretells)
+                                 : MatrixFitOf(light, surfaces, *map, *options, foretells);
+      });
   if (StopRequested()) return StoppedError();
   return FinishedResult(report, *lights);
 }

@@ -1,8 +1,8 @@
 // calls/fit_call.h
 //
-// The call Fit: the matrices of a read-back's lights.
+// The call Fit: the matrices of a read-back's lights, or their plans.
 // In:   v1::FitRequest, with its pixels or beside them.
-// Out:  v1::FitResult, as `lightfit fit --json` writes it.
+// Out:  v1::FitResult, as `lightfit fit --json` writes it but for the yardsticks.
 #pragma once
 
 #include "absl/status/statusor.h"

@@ -123,6 +123,7 @@ void DeclareLimits(CLI::App* app, ServeFlags* flags) {
                   absl::StrCat("Largest read-back [", limits->calls.max_pixels, "]"))
       ->type_name("N")
       ->group(group);
+  add("--max-maps", "Most maps that a plan may have", &limits->calls.max_maps);
   AddScaled<double>(app,
                     group,
                     "--upload-timeout-s",

@@ -19,6 +19,7 @@ namespace lightfit::fuzz {
 inline CallContext SmallContext() {
   CallContext context;
   context.limits.max_pixels = 1024;
+  context.limits.max_maps = 4;
   context.limits.max_matrices = 8;
   context.limits.max_summaries = 8;
   return context;

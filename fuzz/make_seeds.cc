@@ -27,6 +27,7 @@
 #include "wire/camera_proto.h"
 #include "wire/light_proto.h"
 #include "wire/options_proto.h"
+#include "wire/plan_shot_proto.h"
 #include "wire/proto_json.h"
 #include "wire/shot_proto.h"
 #include "wire/summary_proto.h"
@@ -95,6 +96,14 @@ v1::MapSize SmallMap() {
   map.set_width(256);
   map.set_height(128);
   return map;
+}
+
+v1::PlanOptions SmallPlan() {
+  v1::PlanOptions options;
+  options.set_max_maps(3);
+  options.set_texels(8192);
+  options.set_guard_texels(0.5);
+  return options;
 }
 
 // The same pixels as halves and planes, and other choices.
@@ -175,6 +184,10 @@ class Seeds {
     *other.mutable_options() = FitOptionsToProto(FitOptions::AsPublished());
     other.set_foretell_wrong(true);
     Save("fit/other_forms", other);
+    v1::FitRequest plan = fit;
+    plan.clear_map();
+    *plan.mutable_plan_options() = SmallPlan();
+    Save("fit/plan", plan);
     WriteStreams(fit);
 
     v1::EvaluateRequest evaluate = RequestOf<v1::EvaluateRequest>(yard_);
@@ -310,6 +323,28 @@ class Seeds {
     Write(absl::StrCat(folder_, "/", name), ProtoToJson(message).value());
   }
 
+  // One that goes on from what another has remembered.
+  static TrackInput PlanTrack(const v1::Readback& pixels,
+                              const google::protobuf::RepeatedPtrField<v1::Light>& lights) {
+    v1::TrackSetup setup;
+    *setup.mutable_plan_options() = SmallPlan();
+    v1::TrackFrame frame;
+    *frame.mutable_readback() = pixels;
+    *frame.mutable_lights() = lights;
+    TrackSession session = TrackSession::Begin(setup).value();
+    const ReadbackView view = ReadbackView::Of(pixels, lights.size(), CallLimits()).value();
+    *setup.mutable_state() = session.Update(frame, view.view(), {}).result().shot().tracker_state();
+    *setup.mutable_plan_tracker() =
+        PlanTrackerSettingsToProto(PlanTrackerOptions::ForStability(0.5));
+    TrackInput track;
+    *track.add_requests()->mutable_setup() = setup;
+    for (int number = 1; number <= 2; ++number) {
+      frame.set_number(number);
+      *track.add_requests()->mutable_frame() = frame;
+    }
+    return track;
+  }
+
   void WriteStreams(v1::FitRequest fit) const {
     const v1::Readback pixels = fit.readback();
     const size_t num_bytes = pixels.depth().size();
@@ -354,6 +389,7 @@ class Seeds {
     *track.add_requests()->mutable_pixels() = PixelsOf(pixels, 0, 400).pixels();
     *track.add_requests()->mutable_pixels() = PixelsOf(pixels, 400, num_bytes).pixels();
     Save("track/pieces", track);
+    Save("track/plan", PlanTrack(pixels, fit.lights()));
   }
 
   SmallReadback yard_;

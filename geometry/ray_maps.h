@@ -45,9 +45,11 @@ int DensestAt(absl::Span<const RayMap> maps, const Eigen::Vector3d& ray, const A
   return densest;
 }
 
-// Of those that hold the ray.   math.md (20)
-inline int DensestAt(absl::Span<const RayMap> maps, const Eigen::Vector3d& ray) {
-  return DensestAt(maps, ray, [&](int k) { return maps[k].Holds(ray); });
+// Of those that hold the ray, `guard_texels` from their sides.   math.md (20)
+inline int DensestAt(absl::Span<const RayMap> maps,
+                     const Eigen::Vector3d& ray,
+                     double guard_texels = 0.0) {
+  return DensestAt(maps, ray, [&](int k) { return maps[k].Holds(ray, guard_texels); });
 }
 
 }  // namespace lightfit

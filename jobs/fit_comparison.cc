@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "absl/strings/str_format.h"
+#include "jobs/plan_advice.h"
 #include "optimizer/fit.h"
 #include "partition/fit_plan.h"
 
@@ -16,42 +16,6 @@ namespace {
 double MillisecondsSince(std::chrono::steady_clock::time_point start) {
   const auto now = std::chrono::steady_clock::now();
   return std::chrono::duration<double, std::milli>(now - start).count();
-}
-
-// How many maps a light takes that has no single one; 0: there is no plan either.
-int NumMapsThatDo(const Surfaces& surfaces,
-                  const Light& light,
-                  MapSize map,
-                  const FitOptions& options) {
-  // Any rays at all have a plan of so many: one for each face of a cube.
-  constexpr int kAlwaysEnough = 6;
-  PlanOptions plan_options;
-  plan_options.fit = options;
-  plan_options.texels = int64_t{map.width} * map.height;
-  plan_options.choose_by_forecast = false;
-  for (int num_maps = 2; num_maps <= kAlwaysEnough; ++num_maps) {
-    plan_options.max_maps = num_maps;
-    const absl::StatusOr<LightPlan> plan = FitPlan(surfaces, light, plan_options);
-    if (plan.ok()) return static_cast<int>(plan->maps.size());
-    if (!absl::IsFailedPrecondition(plan.status())) return 0;
-  }
-  return 0;
-}
-
-// The error of a light that has no single map, with what to do about it.
-absl::Status WithNumMaps(const absl::Status& status,
-                         const Surfaces& surfaces,
-                         const Light& light,
-                         MapSize map,
-                         const FitOptions& options) {
-  if (!absl::IsFailedPrecondition(status) || light.kind != Light::Kind::kPoint) return status;
-  const int num_maps = NumMapsThatDo(surfaces, light, map, options);
-  if (num_maps == 0) return status;
-  return absl::FailedPreconditionError(
-      absl::StrFormat("%s. A plan of %d maps (options.max_maps = %d) would do",
-                      status.message(),
-                      num_maps,
-                      num_maps));
 }
 
 // Of each light what `compare` says, unless it could not be read.
@@ -82,7 +46,8 @@ FitComparison CompareFit(const Surfaces& surfaces,
   absl::StatusOr<LightMatrix> final = FitLight(surfaces, light, map, options);
   const double time_ms = MillisecondsSince(start);
   if (!final.ok()) {
-    return FailedFitComparison(light, WithNumMaps(final.status(), surfaces, light, map, options));
+    return FailedFitComparison(
+        light, WithNumMaps(final.status(), surfaces, light, map, options, "options.max_maps"));
   }
   const absl::StatusOr<MatrixJudge> judge =
       MatrixJudge::Of(surfaces, light, final->border, options);

@@ -16,6 +16,12 @@ SampleOptions OnTheSameSurfaces(SampleOptions samples, const FitOptions& options
   return samples;
 }
 
+FitOptions OwnOptions(const FitOptions& options) {
+  FitOptions own = FigureOptions(options);
+  own.samples = options.samples;
+  return own;
+}
+
 }  // namespace
 
 FitOptions FigureOptions(const FitOptions& options) {
@@ -26,14 +32,26 @@ FitOptions FigureOptions(const FitOptions& options) {
   return figures;
 }
 
+absl::StatusOr<Figures> OwnFiguresOf(const LightPlan& plan,
+                                     const Surfaces& surfaces,
+                                     const Light& light,
+                                     const PlanOptions& options,
+                                     bool foretells) {
+  const FitOptions own = OwnOptions(options.fit);
+  const absl::StatusOr<LightView> view = ViewLight(surfaces, light, plan.border, own);
+  if (!view.ok()) return view.status();
+  const Plan looked_up = PlanOf(plan);
+  return foretells ? EvaluatePlan(*view, looked_up, own, options.guard_texels)
+                   : MeasurePlan(*view, looked_up, own, options.guard_texels);
+}
+
 absl::StatusOr<MatrixJudge> MatrixJudge::Of(const Surfaces& surfaces,
                                             const Light& light,
                                             Border border,
                                             const FitOptions& options) {
   MatrixJudge judge;
   judge.options_ = FigureOptions(options);
-  judge.own_options_ = judge.options_;
-  judge.own_options_.samples = options.samples;
+  judge.own_options_ = OwnOptions(options);
   absl::StatusOr<LightView> view = ViewLight(surfaces, light, border, judge.options_);
   if (!view.ok()) return view.status();
   judge.view_ = *std::move(view);

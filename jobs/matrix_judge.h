@@ -15,6 +15,7 @@
 #include "optimizer/light_view.h"
 #include "optimizer/readback/surfaces.h"
 #include "partition/fit_plan.h"
+#include "partition/plan_options.h"
 
 namespace lightfit {
 
@@ -35,6 +36,13 @@ struct JudgedPlan {
 // What every table's figures are over, whichever way a matrix was made: the samples that a fit
 // takes by default (SampleOptions), in the metric of `options`.
 FitOptions FigureOptions(const FitOptions& options);
+
+// What MatrixJudge calls own_figures of a plan; the forecast only where `foretells`.
+absl::StatusOr<Figures> OwnFiguresOf(const LightPlan& plan,
+                                     const Surfaces& surfaces,
+                                     const Light& light,
+                                     const PlanOptions& options,
+                                     bool foretells);
 
 // Judges matrices of one light, whatever their borders, over the edges that a map with one border
 // serves.

@@ -36,10 +36,10 @@ absl::StatusOr<double> ForetellFor(const LightView& view,
 
 }  // namespace
 
-absl::StatusOr<Figures> EvaluatePlan(const LightView& view,
-                                     const Plan& plan,
-                                     const FitOptions& options,
-                                     double guard_texels) {
+absl::StatusOr<Figures> MeasurePlan(const LightView& view,
+                                    const Plan& plan,
+                                    const FitOptions& options,
+                                    double guard_texels) {
   const Light& light = *view.light;
   if (absl::Status status = CheckServes(view, options); !status.ok()) return status;
   const absl::StatusOr<PlanLookUp> look_up = PlanLookUp::Create(plan, light, guard_texels);
@@ -75,9 +75,18 @@ absl::StatusOr<Figures> EvaluatePlan(const LightView& view,
     return absl::FailedPreconditionError(
         absl::StrFormat("light \"%s\": a matrix is singular at the samples", light.name));
   }
+  return figures;
+}
+
+absl::StatusOr<Figures> EvaluatePlan(const LightView& view,
+                                     const Plan& plan,
+                                     const FitOptions& options,
+                                     double guard_texels) {
+  absl::StatusOr<Figures> figures = MeasurePlan(view, plan, options, guard_texels);
+  if (!figures.ok()) return figures.status();
   const absl::StatusOr<double> wrong_share = ForetellFor(view, plan, options);
   if (!wrong_share.ok()) return wrong_share.status();
-  figures.wrong_share = *wrong_share;
+  figures->wrong_share = *wrong_share;
   return figures;
 }
 

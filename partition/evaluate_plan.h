@@ -13,6 +13,12 @@
 
 namespace lightfit {
 
+// EvaluatePlan() without the forecast, which takes a pass over the pixels.
+absl::StatusOr<Figures> MeasurePlan(const LightView& view,
+                                    const Plan& plan,
+                                    const FitOptions& options = {},
+                                    double guard_texels = 0.0);
+
 // As EvaluateMatrix(), each sample in the map that it asks. Samples outside of all maps, which the
 // border answers, are in no figure: FootprintStatistics::num_behind says how many. Half spaces of
 // the maps count for the samples and not for the forecast.

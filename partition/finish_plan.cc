@@ -73,7 +73,7 @@ absl::StatusOr<LightPlan> FinishPlan(const LightView& view,
   for (const MapOfCell& map : maps) {
     ray_maps.push_back(RayMap(map.map_from_ray, map.size.width, map.size.height));
   }
-  ScratchVector<Samples> samples = SamplesByMap(view, ray_maps);
+  ScratchVector<Samples> samples = SamplesByMap(view, ray_maps, options.guard_texels);
   for (size_t k = 0; k < maps.size(); ++k) {
     const CellInputs inputs =
         InputsOfCell(view, fitter.rays(), maps[k].cover, std::move(samples[k]), options.fit);
@@ -85,7 +85,8 @@ absl::StatusOr<LightPlan> FinishPlan(const LightView& view,
   }
   ScratchVector<Eigen::Matrix4d> matrices;
   for (const LightMatrix& map : plan.maps) matrices.push_back(map.map_from_world);
-  const ScratchVector<MapDepths> depths = FindMapDepths(view, options.fit, ray_maps, matrices);
+  const ScratchVector<MapDepths> depths =
+      FindMapDepths(view, options.fit, ray_maps, matrices, options.guard_texels);
   for (size_t k = 0; k < maps.size(); ++k) {
     if (depths[k].Fits()) continue;
     LayDepthRow(*view.light,
@@ -120,7 +121,9 @@ std::optional<CoverOfCell> FindCoverOfCell(const ServedRays& rays, Bins bins, co
   return cover;
 }
 
-ScratchVector<Samples> SamplesByMap(const LightView& view, absl::Span<const RayMap> maps) {
+ScratchVector<Samples> SamplesByMap(const LightView& view,
+                                    absl::Span<const RayMap> maps,
+                                    double guard_texels) {
   ScratchVector<Samples> by_map(maps.size());
   for (Samples& samples : by_map) {
     samples.ray_from_screen = view.samples.ray_from_screen;
@@ -128,7 +131,7 @@ ScratchVector<Samples> SamplesByMap(const LightView& view, absl::Span<const RayM
     samples.counts.used = 0;
   }
   for (size_t i = 0; i < view.samples.size(); ++i) {
-    const int asked = DensestAt(maps, view.samples.At(i).X);
+    const int asked = DensestAt(maps, view.samples.At(i).X, guard_texels);
     if (asked < 0) continue;
     by_map[asked].AppendFrom(view.samples, i);
     ++by_map[asked].counts.used;

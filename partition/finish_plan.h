@@ -51,8 +51,11 @@ absl::StatusOr<ScratchVector<MapOfCell>> MapsOfCells(const CellFitter& fitter,
 // Nothing where CoverBins() gives nothing.
 std::optional<CoverOfCell> FindCoverOfCell(const ServedRays& rays, Bins bins, const Light& light);
 
-// The view's samples that ask each of the maps, which are of its normalised rays.
-ScratchVector<Samples> SamplesByMap(const LightView& view, absl::Span<const RayMap> maps);
+// The view's samples that ask each of the maps, which are of its normalised rays; `guard_texels` as
+// PlanLookUp has them.
+ScratchVector<Samples> SamplesByMap(const LightView& view,
+                                    absl::Span<const RayMap> maps,
+                                    double guard_texels);
 
 // What the matrix and the figures of one of several maps are made from (optimizer/fit_matrix.h).
 // Without a search nobody asks for the energy's tensor, and it is 0.

@@ -16,7 +16,8 @@ bool MapDepths::Fits() const {
 ScratchVector<MapDepths> FindMapDepths(const LightView& view,
                                        const FitOptions& fit,
                                        absl::Span<const RayMap> maps,
-                                       absl::Span<const Eigen::Matrix4d> map_from_world) {
+                                       absl::Span<const Eigen::Matrix4d> map_from_world,
+                                       double guard_texels) {
   const Surfaces& surfaces = *view.surfaces;
   const Readback& readback = surfaces.readback;
   const uint32_t bit = uint32_t{1} << view.light->shadow_bit;
@@ -33,7 +34,7 @@ ScratchVector<MapDepths> FindMapDepths(const LightView& view,
       const Eigen::Vector4d screen(x + 0.5, y + 0.5, d, 1.0);
       Eigen::Vector4d world = surfaces.world_from_screen * screen;
       world /= world.w();
-      const int k = DensestAt(maps, ray_from_world * world);
+      const int k = DensestAt(maps, ray_from_world * world, guard_texels);
       if (k < 0) continue;
       const double w = map_from_world[k].row(3).dot(world);
       const double z = map_from_world[k].row(2).dot(world) / w;

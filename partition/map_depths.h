@@ -33,11 +33,13 @@ struct MapDepths {
   bool Fits() const;  // but for rounding
 };
 
-// Element k is of the map k. Of `fit` counts the cover. Of no use once a StopScope says so.
+// Element k is of the map k. Of `fit` counts the cover; `guard_texels` as PlanLookUp has them. Of
+// no use once a StopScope says so.
 ScratchVector<MapDepths> FindMapDepths(const LightView& view,
                                        const FitOptions& fit,
                                        absl::Span<const RayMap> maps,
-                                       absl::Span<const Eigen::Matrix4d> map_from_world);
+                                       absl::Span<const Eigen::Matrix4d> map_from_world,
+                                       double guard_texels);
 
 // Lays the depth row of a map that is asked: over `distances`, DistancesFromLight(), for a
 // directional light. `room`: on either side, as a share of the range, and more than a little for

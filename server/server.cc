@@ -88,6 +88,7 @@ absl::Status ValidateServerLimits(const ServerLimits& limits) {
   if (status.ok()) status = CheckAtLeast("--max-message-mib", limits.max_message_bytes, 1 << 20);
   if (status.ok()) status = CheckAtLeast("--memory-mib", limits.memory_bytes, 1 << 20);
   if (status.ok()) status = CheckAtLeast("--max-pixels", limits.calls.max_pixels, 1);
+  if (status.ok()) status = CheckAtLeast("--max-maps", limits.calls.max_maps, 1);
   if (status.ok() && limits.max_message_bytes > kMostMessageBytes) {
     status = absl::InvalidArgumentError(
         absl::StrFormat("--max-message-mib %d: want at most 1024; larger read-backs are streamed",

@@ -64,7 +64,7 @@ absl::Status TrackCall::Take(v1::TrackRequest* request) {
     if (session_.has_value()) {
       return absl::InvalidArgumentError("setup: is here already, want it once");
     }
-    absl::StatusOr<TrackSession> session = TrackSession::Begin(request->setup());
+    absl::StatusOr<TrackSession> session = TrackSession::Begin(request->setup(), call_.parts().limits.calls);
     if (!session.ok()) return session.status();
     session_.emplace(*std::move(session));
     return absl::OkStatus();

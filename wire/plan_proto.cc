@@ -5,8 +5,10 @@
 #include <string>
 #include <utility>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/strip.h"
 #include "geometry/homography.h"
 #include "wire/matrix_proto.h"
 #include "wire/result_json.h"
@@ -111,18 +113,37 @@ absl::StatusOr<PlanOptions> PlanOptionsFromProto(const v1::PlanOptions& proto,
                                                  const FitOptions& fit) {
   PlanOptions options;
   options.fit = fit;
-  options.max_maps = proto.max_maps();
-  options.guard_texels = proto.guard_texels();
-  options.choose_by_forecast = proto.choose_by_forecast();
+  if (proto.has_max_maps()) options.max_maps = proto.max_maps();
+  if (proto.has_guard_texels()) options.guard_texels = proto.guard_texels();
+  if (proto.has_choose_by_forecast()) options.choose_by_forecast = proto.choose_by_forecast();
   if (proto.has_each()) {
+    if (proto.has_texels()) {
+      return absl::InvalidArgumentError(
+          absl::StrFormat("plan_options.texels = %d: is what all maps have together, and each the "
+                          "size of every map; want one of the two",
+                          proto.texels()));
+    }
     options.each = MapSize{proto.each().width(), proto.each().height()};
-  } else {
+  } else if (proto.has_texels()) {
     options.texels = proto.texels();
   }
-  if (absl::Status status = ValidatePlanOptions(options); !status.ok()) {
-    return Named("plan_options", status);
+  const absl::Status status = ValidatePlanOptions(options);
+  if (status.ok()) return options;
+  absl::string_view message = status.message();
+  if (absl::StartsWith(message, "options.margin_texels")) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("plan_options.each = %dx%d: the guard of %g and the margin of %g texels on "
+                        "every side leave "
+                        "nothing of it",
+                        options.each->width,
+                        options.each->height,
+                        options.guard_texels,
+                        fit.margin_texels));
   }
-  return options;
+  if (absl::ConsumePrefix(&message, "options.")) {
+    return absl::InvalidArgumentError(absl::StrCat("plan_options.", message));
+  }
+  return Named("plan_options.each", status);
 }
 
 }  // namespace lightfit

@@ -34,7 +34,8 @@ absl::Status CheckHasOneMap(const v1::LightResult& light);
 // Without PlanOptions::fit, which is FitResult::options.
 v1::PlanOptions PlanOptionsToProto(const PlanOptions& options);
 
-// InvalidArgument names the field whose value is out of range.
+// Fields that are absent mean the default. InvalidArgument names the field whose value is out of
+// range. `fit` has been validated.
 absl::StatusOr<PlanOptions> PlanOptionsFromProto(const v1::PlanOptions& proto,
                                                  const FitOptions& fit);
 

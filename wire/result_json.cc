@@ -109,7 +109,7 @@ void SetSeveralMaps(const LightFit& fit, const FitReport& report, v1::LightResul
   proto->set_facing(FacingSourceToProto(fit.plan->plan.facing));
   proto->mutable_energies()->set_final(figures.energy);
   SetYardsticks(figures.energy, fit, proto->mutable_energies());
-  if (figures.wrong_share) {
+  if (figures.wrong_share.has_value()) {
     *proto->mutable_foretold_wrong() = ForetoldToProto(*figures.wrong_share, fit);
   }
   if (figures.samples.used == 0) return;  // of a whole shot: its frames have them

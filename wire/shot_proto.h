@@ -1,7 +1,7 @@
 // wire/shot_proto.h
 //
 // What a frame of a shot has beside its matrices, to and from lightfit.v1.
-// In:   TrackerOptions, TrackerAction, TrackedState; the same of plans.
+// In:   TrackerOptions, TrackerAction, TrackedState.
 // Out:  their messages in lightfit/v1/shot.proto; what a tracker remembers, read back exactly.
 #pragma once
 
@@ -13,7 +13,6 @@
 #include "geometry/map_size.h"
 #include "lightfit/v1/shot.pb.h"
 #include "optimizer/tracking/tracker.h"
-#include "partition/tracking/plan_tracker.h"
 
 namespace lightfit {
 
@@ -32,14 +31,5 @@ v1::TrackedState TrackedStateToProto(const TrackedState& state);
 absl::StatusOr<std::vector<TrackedState>> TrackedStatesFromProto(const v1::ShotInfo& shot,
                                                                  absl::Span<const Light> lights,
                                                                  MapSize map);
-
-// The same of plans; without PlanTrackerOptions::plan, which is FitResult::plan_options.
-v1::PlanTrackerSettings PlanTrackerSettingsToProto(const PlanTrackerOptions& options);
-absl::StatusOr<PlanTrackerOptions> PlanTrackerSettingsFromProto(
-    const v1::PlanTrackerSettings& proto);
-v1::TrackedPlanState TrackedPlanStateToProto(const TrackedPlanState& state);
-absl::StatusOr<std::vector<TrackedPlanState>> TrackedPlanStatesFromProto(
-    const v1::ShotInfo& shot, absl::Span<const Light> lights);
-v1::TrackedPlanChange TrackedPlanChangeToProto(const TrackedPlan& tracked);
 
 }  // namespace lightfit

@@ -33,7 +33,7 @@ class Stream {
  private:
   absl::Status Begin(v1::TrackSetup setup) {
     ShortenSearch(setup.mutable_options());
-    absl::StatusOr<TrackSession> session = TrackSession::Begin(setup);
+    absl::StatusOr<TrackSession> session = TrackSession::Begin(setup, SmallContext().limits);
     if (!session.ok()) return session.status();
     session_.emplace(*std::move(session));
     return absl::OkStatus();

@@ -15,6 +15,7 @@
 #include "wire/matrix_proto.h"
 #include "wire/options_proto.h"
 #include "wire/plan_proto.h"
+#include "wire/plan_shot_proto.h"
 #include "wire/proto_json.h"
 #include "wire/shot_proto.h"
 

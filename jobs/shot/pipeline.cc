@@ -113,15 +113,9 @@ class FramePipeline {
       return;
     }
     part->look_ups = LookUpsOf(job_, *result);
-    absl::StatusOr<std::vector<TrackedState>> matrices =
-        TrackedStatesFromProto(result->shot(), job_.lights, job_.map);
-    absl::StatusOr<std::vector<TrackedPlanState>> plans =
-        TrackedPlanStatesFromProto(result->shot(), job_.lights);
-    for (const absl::Status& status : {matrices.status(), plans.status()}) {
-      context_.Fail(InFile(context_.paths.Result(mode, job_.frames[frame]), status));
-    }
-    if (matrices.ok()) part->states.matrices = *std::move(matrices);
-    if (plans.ok()) part->states.plans = *std::move(plans);
+    absl::StatusOr<ShotStates> states = StatesOf(job_, *result);
+    context_.Fail(InFile(context_.paths.Result(mode, job_.frames[frame]), states.status()));
+    if (states.ok()) part->states = *std::move(states);
     context_.KeepRows(mode, frame, *result);
   }
 

@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "wire/crawl_proto.h"
+#include "wire/plan_shot_proto.h"
 #include "wire/shot_proto.h"
 
 namespace lightfit {
@@ -71,10 +72,8 @@ int NumMoved(ShotMode mode, size_t frame, int num_maps, const v1::ShotLight& lig
     case ShotMode::kTracked: {
       if (!light.has_plan()) return Moved(light.action()) ? 1 : 0;
       const auto& maps = light.plan().maps();
-      return static_cast<int>(
-          std::count_if(maps.begin(), maps.end(), [](const v1::TrackedMapChange& map) {
-            return Moved(map.action());
-          }));
+      return static_cast<int>(std::count_if(
+          maps.begin(), maps.end(), [](const v1::ShotMap& map) { return Moved(map.action()); }));
     }
     case ShotMode::kPerShot:
       return frame == 0 ? num_maps : 0;
@@ -96,7 +95,7 @@ std::string ActionName(v1::TrackerAction action) {
 }
 
 // What became of a plan in one word: "new", "kept", or "2 of 4 moved".
-std::string PlanActionName(const v1::TrackedPlanChange& change, int num_moved) {
+std::string PlanActionName(const v1::ShotPlan& change, int num_moved) {
   if (change.is_new()) return "new";
   if (num_moved == 0) return "kept";
   return absl::StrCat(num_moved, " of ", change.maps_size(), " moved");
@@ -104,7 +103,7 @@ std::string PlanActionName(const v1::TrackedPlanChange& change, int num_moved) {
 
 void SetChange(const ShotAnswer& answer, v1::ShotLight* proto) {
   if (const auto* tracked = std::get_if<TrackedPlan>(&answer)) {
-    *proto->mutable_plan() = TrackedPlanChangeToProto(*tracked);
+    *proto->mutable_plan() = ShotPlanToProto(*tracked);
     return;
   }
   const auto& matrix = std::get<TrackedMatrix>(answer);
@@ -146,10 +145,33 @@ v1::FitResult ShotResultToProto(const ShotJob& job,
       *shot.add_tracker_state() = TrackedStateToProto(state);
     }
     for (const TrackedPlanState& state : states.plans) {
-      *shot.add_plan_tracker_state() = TrackedPlanStateToProto(state);
+      *shot.add_tracker_state() = TrackedPlanStateToProto(state);
     }
   }
   return result;
+}
+
+absl::StatusOr<ShotStates> StatesOf(const ShotJob& job, const v1::FitResult& result) {
+  ShotStates states;
+  if (!job.plans.has_value()) {
+    absl::StatusOr<std::vector<TrackedState>> matrices =
+        TrackedStatesFromProto(result.shot(), job.lights, job.map);
+    if (!matrices.ok()) return matrices.status();
+    states.matrices = *std::move(matrices);
+    return states;
+  }
+  for (const v1::TrackedState& proto : result.shot().tracker_state()) {
+    if (!proto.has_plan()) continue;  // it had none yet
+    const auto light = std::find_if(job.lights.begin(), job.lights.end(), [&](const Light& other) {
+      return other.name == proto.light();
+    });
+    if (light == job.lights.end()) continue;
+    absl::StatusOr<TrackedPlanState> state = TrackedPlanStateFromProto(proto, "trackerState");
+    if (!state.ok()) return state.status();
+    state->light = *light;
+    states.plans.push_back(*std::move(state));
+  }
+  return states;
 }
 
 std::vector<ShotRow> RowsOfResult(const ShotJob& job,

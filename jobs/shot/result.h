@@ -38,6 +38,10 @@ v1::FitResult ShotResultToProto(const ShotJob& job,
                                 absl::Span<const absl::StatusOr<ShotFit>> fits,
                                 const ShotStates& states);
 
+// What trackers remembered after a frame, of the lights that are the job's still. InvalidArgument
+// when a number is none.
+absl::StatusOr<ShotStates> StatesOf(const ShotJob& job, const v1::FitResult& result);
+
 // One light in one frame in one mode.
 struct ShotRow {
   ShotMode mode = ShotMode::kPerFrame;

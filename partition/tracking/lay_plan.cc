@@ -73,13 +73,15 @@ absl::StatusOr<LightPlan> LayPlan(const LightView& view,
                                   const KeptMaps& maps,
                                   const HeldBins& held,
                                   const FitOptions& fit,
+                                  double guard_texels,
                                   double depth_room) {
   LightPlan plan = EmptyPlan(view);
   const ScratchVector<RayMap> ray_maps = RayMapsOf(maps);
   ScratchVector<Eigen::Matrix4d> matrices;
   for (const KeptMap& map : maps) matrices.push_back(map.map_from_world);
-  const ScratchVector<MapDepths> depths = FindMapDepths(view, fit, ray_maps, matrices);
-  ScratchVector<Samples> samples = SamplesByMap(view, ray_maps);
+  const ScratchVector<MapDepths> depths =
+      FindMapDepths(view, fit, ray_maps, matrices, guard_texels);
+  ScratchVector<Samples> samples = SamplesByMap(view, ray_maps, guard_texels);
   for (size_t k = 0; k < maps.size(); ++k) {
     const int index = static_cast<int>(k);
     std::optional<CoverOfCell> cover = FindCoverOfCell(held.rays, held.BinsOf(index), *view.light);

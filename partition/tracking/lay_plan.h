@@ -17,12 +17,13 @@
 
 namespace lightfit {
 
-// `depth_room`: what a new depth row has on either side, as a share of the range of depth. Here and
-// below: CancelledError once a StopScope says so.
+// `guard_texels`: as PlanLookUp has them. `depth_room`: what a new depth row has on either side, as
+// a share of the range of depth. Here and below: CancelledError once a StopScope says so.
 absl::StatusOr<LightPlan> LayPlan(const LightView& view,
                                   const KeptMaps& maps,
                                   const HeldBins& held,
                                   const FitOptions& fit,
+                                  double guard_texels,
                                   double depth_room);
 
 // A plan of one map, which holds the view's cover and is asked by all.

@@ -221,11 +221,12 @@ class FrameTracker {
     keeper.MakeRoomy(&roomy);
     const HeldBins held = keeper.HeldBy(roomy);
     if (held.HoldsAll()) {
-      absl::StatusOr<LightPlan> plan = LayPlan(*view_, roomy, held, view_fit_, DepthRoom());
+      absl::StatusOr<LightPlan> plan =
+          LayPlan(*view_, roomy, held, view_fit_, tight_.guard_texels, DepthRoom());
       const bool will_do = plan.ok() && !IsTooMuch(plan->energy, (*own_)->energy);
       if (will_do || absl::IsCancelled(plan.status())) return plan;
     }
-    return LayPlan(*view_, maps, keeper.HeldBy(maps), view_fit_, DepthRoom());
+    return LayPlan(*view_, maps, keeper.HeldBy(maps), view_fit_, tight_.guard_texels, DepthRoom());
   }
 
   absl::StatusOr<TrackedPlan> TrackOne(const KeptMap& map) {
@@ -261,7 +262,8 @@ class FrameTracker {
     if (!holds_all) return NewPlan(TrackerAction::kInvalid);
 
     const auto lay = [&] {
-      return LayPlan(*view_, maps, keeper.HeldBy(maps), view_fit_, DepthRoom());
+      return LayPlan(
+          *view_, maps, keeper.HeldBy(maps), view_fit_, tight_.guard_texels, DepthRoom());
     };
     absl::StatusOr<LightPlan> plan = lay();
     double best = BestOr(keeper.TightEnergyOf(maps));

@@ -8,7 +8,8 @@
     result = lightfit.fit(depth, shadow, camera, lights, (1024, 1024))
     result["sun"].clip_from_world
 
-fit, fit_exr, fit_summary, track, evaluate and allocate compute in this process. lightfit.Client has
+fit_plan gives each light several maps. All the calls, fit, fit_plan, fit_exr, fit_plan_exr,
+fit_summary, track, track_plan, evaluate and allocate, compute in this process. lightfit.Client has
 the same calls, answered by a server (`lightfit serve`), with the same results.
 
 Matrices are (4, 4) float64 for column vectors and named target_from_source. World units are the
@@ -35,12 +36,13 @@ from lightfit.exr import ExrReadback, read_exr
 from lightfit.inputs import Camera, Light
 from lightfit.local import Local
 from lightfit.request import Candidate, Tolerance
+from lightfit.messages import Footprint
+from lightfit.plan import Plan, PlanMap
 from lightfit.result import (
     Allocation,
     EvaluateResult,
     Evaluation,
     FitResult,
-    Footprint,
     LightResult,
     Samples,
     Status,
@@ -48,7 +50,8 @@ from lightfit.result import (
 from lightfit.v1.allocation_pb2 import MapSizeRules
 from lightfit.v1.matrix_pb2 import ClipConvention
 from lightfit.v1.options_pb2 import FitOptions
-from lightfit.v1.shot_pb2 import TrackerSettings
+from lightfit.v1.result_pb2 import PlanOptions
+from lightfit.v1.shot_pb2 import PlanTrackerSettings, TrackerSettings
 
 if TYPE_CHECKING:
     from lightfit.channel import TlsOptions
@@ -57,8 +60,11 @@ if TYPE_CHECKING:
 _local = Local()
 fit = _local.fit
 fit_exr = _local.fit_exr
+fit_plan = _local.fit_plan
+fit_plan_exr = _local.fit_plan_exr
 fit_summary = _local.fit_summary
 track = _local.track
+track_plan = _local.track_plan
 evaluate = _local.evaluate
 allocate = _local.allocate
 
@@ -86,6 +92,10 @@ __all__ = [
     "LightfitError",
     "Local",
     "MapSizeRules",
+    "Plan",
+    "PlanMap",
+    "PlanOptions",
+    "PlanTrackerSettings",
     "Samples",
     "Status",
     "TlsOptions",
@@ -98,9 +108,12 @@ __all__ = [
     "evaluate",
     "fit",
     "fit_exr",
+    "fit_plan",
+    "fit_plan_exr",
     "fit_summary",
     "read_exr",
     "track",
+    "track_plan",
 ]
 
 

@@ -39,6 +39,7 @@ _WORDS = {"auto": "automatic"}
 Clip = Union[str, matrix_pb2.ClipConvention]
 MapSize = Tuple[int, int]
 Options = Union[options_pb2.FitOptions, Mapping[str, Any]]
+PlanOptions = Union[result_pb2.PlanOptions, Mapping[str, Any]]
 Path_ = Union[str, "os.PathLike[str]"]
 
 
@@ -114,6 +115,27 @@ def options_message(options: Optional[Options]) -> Optional[options_pb2.FitOptio
         json_format.ParseDict(full, message)
     except json_format.ParseError as error:
         raise InvalidArgumentError(f"options: {_one_line(error)}") from None
+    return message
+
+
+def plan_message(plan: Optional[PlanOptions]) -> result_pb2.PlanOptions:
+    """plan: a PlanOptions message, or a dict of its fields, {"max_maps": 4, "each": (512, 512)}."""
+    if isinstance(plan, result_pb2.PlanOptions):
+        return plan
+    if plan is not None and not isinstance(plan, Mapping):
+        raise InvalidArgumentError(
+            f"plan: is a {type(plan).__name__}, want a dict such as {{\"max_maps\": 4}} or "
+            "lightfit.PlanOptions"
+        )
+    fields = dict(plan or {})
+    each = fields.pop("each", None)
+    message = result_pb2.PlanOptions()
+    try:
+        json_format.ParseDict(fields, message)
+    except json_format.ParseError as error:
+        raise InvalidArgumentError(f"plan: {_one_line(error)}") from None
+    if each is not None:
+        message.each.CopyFrom(map_size_message(each, "plan: each"))
     return message
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import os
 from pathlib import Path
-from typing import Any, Iterable, Mapping, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, Iterable, Mapping, Optional, Sequence, Tuple, Union
 
 from numpy.typing import ArrayLike
 
@@ -28,6 +28,7 @@ from lightfit.v1 import (
     allocation_pb2,
     light_pb2,
     readback_pb2,
+    result_pb2,
     service_pb2,
     shot_pb2,
     summary_pb2,
@@ -35,6 +36,10 @@ from lightfit.v1 import (
 
 # A summary: the path of a file of `lightfit summarize`, its bytes, or its message.
 Summary = Union[str, "os.PathLike[str]", bytes, summary_pb2.SummaryFile]
+
+
+# Of every light's map; or of several maps for each light.
+SizeOrPlan = Union[MapSize, result_pb2.PlanOptions]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -65,7 +70,7 @@ def readback_parts(
 
 def fit_request(
     parts: ReadbackParts,
-    map_size: MapSize,
+    size: SizeOrPlan,
     options: Optional[Options],
     clip: Clip,
     foretell_wrong: bool,
@@ -74,11 +79,17 @@ def fit_request(
     return service_pb2.FitRequest(
         readback=parts.header,
         lights=parts.lights,
-        map=map_size_message(map_size),
+        **_size_fields(size),
         options=options_message(options),
         clip=clip_message(clip),
         foretell_wrong=foretell_wrong,
     )
+
+
+def _size_fields(size: SizeOrPlan) -> Dict[str, Any]:
+    if isinstance(size, result_pb2.PlanOptions):
+        return {"plan_options": size}
+    return {"map": map_size_message(size)}
 
 
 def summary_request(
@@ -202,9 +213,9 @@ def allocate_request(
 
 
 def track_setup(
-    map_size: MapSize,
+    size: SizeOrPlan,
     stability: Optional[float],
-    tracker: Optional[shot_pb2.TrackerSettings],
+    tracker: Union[shot_pb2.TrackerSettings, shot_pb2.PlanTrackerSettings, None],
     options: Optional[Options],
     clip: Clip,
     state: Sequence[shot_pb2.TrackedState],
@@ -212,12 +223,15 @@ def track_setup(
     if stability is not None and tracker is not None:
         raise InvalidArgumentError("track: want stability or tracker, not both")
     setup = service_pb2.TrackSetup(
-        map=map_size_message(map_size),
+        **_size_fields(size),
         options=options_message(options),
         clip=clip_message(clip),
-        tracker=tracker,
         state=state,
     )
+    if isinstance(tracker, shot_pb2.TrackerSettings):
+        setup.tracker.CopyFrom(tracker)
+    elif tracker is not None:
+        setup.plan_tracker.CopyFrom(tracker)
     if stability is not None:
         setup.stability = stability
     return setup

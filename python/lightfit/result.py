@@ -6,10 +6,17 @@ from __future__ import annotations
 import dataclasses
 from typing import Any, Dict, List, Optional, Tuple
 
-import numpy
-from numpy.typing import NDArray
-
 from lightfit.errors import Code, error_of
+from lightfit.messages import (
+    Footprint,
+    Matrix,
+    footprint_of,
+    lower_word,
+    matrix_of,
+    optional,
+    word_of,
+)
+from lightfit.plan import Plan
 from lightfit.v1 import (
     allocation_pb2,
     matrix_pb2,
@@ -17,8 +24,6 @@ from lightfit.v1 import (
     service_pb2,
     shot_pb2,
 )
-
-Matrix = NDArray[numpy.float64]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -35,16 +40,6 @@ class Status:
 
     def __str__(self) -> str:
         return self.message if self.message else self.code
-
-
-@dataclasses.dataclass(frozen=True)
-class Footprint:
-    """How far one texel reaches on the screen, read-back pixels per texel. 1 is one-to-one."""
-
-    rms: float
-    median: Optional[float]  # None, as p99 and worst, with options compute_statistics: False
-    p99: Optional[float]
-    worst: Optional[float]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -98,6 +93,11 @@ class LightResult:
     action: Optional[str]
     frames_kept: Optional[int]
 
+    # Where several maps were asked for (`fit_plan`, `track_plan`): the answer, of one map or more.
+    # Of several there is no single matrix: map_size is (0, 0), matrices are None, and energy,
+    # footprint and samples are the plan's. In a track its maps have their own action.
+    plan: Optional[Plan]
+
     message: result_pb2.LightResult = dataclasses.field(repr=False)
 
     @property
@@ -108,25 +108,29 @@ class LightResult:
     def of(cls, message: result_pb2.LightResult) -> "LightResult":
         status = status_of(message.status)
         ok = status.ok
-        tracked = message.HasField("shot")
+        shot = message.shot if message.HasField("shot") else None
+        tracked = shot is not None and not shot.HasField("plan")
         return cls(
             name=message.name,
             status=status,
             map_size=(message.map.width, message.map.height),
-            map_from_world=_matrix(message.map_from_world) if ok else None,
-            clip_from_world=_matrix(message.clip_from_world) if ok else None,
-            border=_lower_word(matrix_pb2.Border, message.border, "BORDER_"),
-            facing=_lower_word(result_pb2.FacingSource, message.facing, "FACING_SOURCE_"),
+            map_from_world=matrix_of(message.map_from_world) if ok else None,
+            clip_from_world=matrix_of(message.clip_from_world) if ok else None,
+            border=lower_word(matrix_pb2.Border, message.border, "BORDER_"),
+            facing=lower_word(result_pb2.FacingSource, message.facing, "FACING_SOURCE_"),
             energy=message.energies.final if ok else None,
-            footprint=_footprint(message.footprint) if ok else None,
+            footprint=footprint_of(message.footprint) if ok else None,
             samples=_samples(message.samples) if ok else None,
             evaluations=message.evaluations,
-            stop_reason=_word(result_pb2.StopReason, message.stop_reason, "STOP_REASON_"),
-            foretold_wrong=_optional(message, "foretold_wrong", lambda part: part.final),
-            action=_word(shot_pb2.TrackerAction, message.shot.action, "TRACKER_ACTION_")
+            stop_reason=word_of(result_pb2.StopReason, message.stop_reason, "STOP_REASON_"),
+            foretold_wrong=optional(message, "foretold_wrong", lambda part: part.final),
+            action=word_of(shot_pb2.TrackerAction, message.shot.action, "TRACKER_ACTION_")
             if tracked
             else None,
             frames_kept=message.shot.frames_kept if tracked else None,
+            plan=Plan.of(message.plan, shot.plan if shot is not None else None)
+            if message.HasField("plan")
+            else None,
             message=message,
         )
 
@@ -138,7 +142,7 @@ class _Lights:
 
     @property
     def ok(self) -> bool:
-        """Whether every light has its matrix."""
+        """Whether every light has its matrix, or its plan."""
         return all(light.ok for light in self.lights)
 
     def __getitem__(self, name: str) -> LightResult:
@@ -191,7 +195,7 @@ class Evaluation:
             light=message.light,
             status=status,
             energy=message.energy if ok else None,
-            footprint=_footprint(message.footprint) if ok else None,
+            footprint=footprint_of(message.footprint) if ok else None,
             samples=_samples(message.samples) if ok else None,
             num_behind=message.num_behind if ok else None,
             wrong_share=message.wrong_share if ok else None,
@@ -239,29 +243,5 @@ def _named(light: LightResult) -> str:
     return message if name in message else f"{name}: {message}"
 
 
-def _matrix(message: matrix_pb2.Matrix4x4) -> Optional[Matrix]:
-    return numpy.array(message.m, dtype=numpy.float64).reshape(4, 4) if message.m else None
-
-
-def _optional(message: Any, field: str, read: Any = lambda value: value) -> Any:
-    return read(getattr(message, field)) if message.HasField(field) else None
-
-
-def _footprint(message: result_pb2.FootprintStatistics) -> Footprint:
-    return Footprint(
-        message.rms, *(_optional(message, name) for name in ("median", "p99", "worst"))
-    )
-
-
 def _samples(message: result_pb2.SampleCounts) -> Samples:
     return Samples(*(getattr(message, field.name) for field in dataclasses.fields(Samples)))
-
-
-def _word(enum: Any, number: int, prefix: str) -> str:
-    word = enum.DESCRIPTOR.values_by_number.get(number)
-    return str(word.name)[len(prefix) :] if word else str(number)
-
-
-def _lower_word(enum: Any, number: int, prefix: str) -> Optional[str]:
-    """None for what is unspecified."""
-    return _word(enum, number, prefix).lower() if number != 0 else None

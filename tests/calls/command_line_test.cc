@@ -3,9 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <initializer_list>
 #include <string>
 
 #include "calls/allocate_call.h"
+#include "calls/fit_call.h"
 #include "calls/summary_call.h"
 #include "tests/calls/requests.h"
 #include "tests/cli/allocations.h"
@@ -66,6 +68,53 @@ TEST(CommandLine, FitOfSummariesIsTheSame) {
   const auto result = AnswerFitSummary(request, CallContext());
   ASSERT_THAT(result, testing::IsOk());
   EXPECT_EQ(JsonWithoutSource(*result), JsonWithoutSource(ReadResult(path)));
+}
+
+// The yardsticks are the command line's alone.
+v1::FitResult WithoutYardsticks(v1::FitResult result) {
+  for (v1::LightResult& light : *result.mutable_lights()) {
+    for (const char* field : {"focused",
+                              "as_published",
+                              "one_map",
+                              "final_over_focused",
+                              "final_over_as_published",
+                              "final_over_one_map"}) {
+      for (google::protobuf::Message* message : std::initializer_list<google::protobuf::Message*>{
+               light.mutable_energies(), light.mutable_foretold_wrong()}) {
+        const auto* found = message->GetDescriptor()->FindFieldByName(field);
+        if (found != nullptr) message->GetReflection()->ClearField(message, found);
+      }
+    }
+  }
+  return result;
+}
+
+// Whatever the sizes of maps, and of one map too.
+TEST(CommandLine, PlansAreTheSame) {
+  const auto compare = [](const Arguments& more, const auto& fill) {
+    SCOPED_TRACE(more[1]);
+    const TemporaryFolder folder;
+    const std::string path = folder.Path("plan.json");
+    const Arguments fit = {"fit", kYard, "--lights", kYardLights, "--quiet", "--json", path};
+    ASSERT_EQ(RunLightfit(Joined(fit, more)).exit_code, 0);
+    auto request = testing::RequestOf<v1::FitRequest>(Yard().file.View(), Yard().lights);
+    request.set_foretell_wrong(true);
+    request.mutable_options()->set_border(v1::BORDER_CHOICE_AUTOMATIC);
+    fill(request.mutable_plan_options());
+    const auto result = AnswerFit(request, CallContext());
+    ASSERT_THAT(result, testing::IsOk());
+    EXPECT_GT(result->lights(0).plan().maps_size(), 1);
+    EXPECT_EQ(JsonWithoutSource(*result), JsonWithoutSource(WithoutYardsticks(ReadResult(path))));
+  };
+  compare({"--maps", "4", "--texels", "90000", "--guard", "1.5"}, [](v1::PlanOptions* options) {
+    options->set_texels(90000);
+    options->set_guard_texels(1.5);
+  });
+  compare({"--maps", "2", "--map", "256x128"}, [](v1::PlanOptions* options) {
+    options->set_max_maps(2);
+    options->mutable_each()->set_width(256);
+    options->mutable_each()->set_height(128);
+  });
 }
 
 }  // namespace

@@ -82,6 +82,32 @@ TEST(PlanComparison, AnUnreadableLightFailsAlone) {
   EXPECT_FALSE(compared.comparisons[0].plan.has_value());
 }
 
+// What a call says of a plan is what the command line writes of it.
+TEST(PlanComparison, OwnFiguresAreThoseOfTheResultFile) {
+  const auto lights = ReadLightsFile(RepositoryPath("examples/yard_180/scene.json"));
+  ASSERT_THAT(lights, IsOk());
+  const auto file = ReadReadbackExr(RepositoryPath("examples/yard_180/0001.exr"), *lights);
+  ASSERT_THAT(file, IsOk());
+  PlanOptions options;
+  options.max_maps = 2;
+  options.texels = 40000;
+  options.guard_texels = 1.0;
+  for (const bool use_outlines : {false, true}) {
+    options.fit.samples.use_outlines = use_outlines;
+    const absl::StatusOr<Surfaces> surfaces =
+        FindSurfaces(file->View(), LightMask(*lights), options.fit.samples);
+    ASSERT_THAT(surfaces, IsOk());
+    const FitComparison compared = ComparePlan(*surfaces, lights->front(), options);
+    ASSERT_TRUE(compared.ok()) << compared.status();
+    const JudgedPlan& judged = **compared.plan;
+    const auto own = OwnFiguresOf(judged.plan, *surfaces, lights->front(), options, true);
+    ASSERT_THAT(own, IsOk());
+    EXPECT_EQ(own->energy, judged.own_figures.energy);
+    EXPECT_EQ(own->wrong_share, judged.own_figures.wrong_share);
+    EXPECT_EQ(own->samples.used, judged.own_figures.samples.used);
+  }
+}
+
 // The number that the error says is the least that has a plan.
 TEST(PlanComparison, SaysHowManyMapsALampAmongItsReceiversTakes) {
   const auto lights = ReadLightsFile(RepositoryPath("examples/room_180/scene.json"));

@@ -147,6 +147,22 @@ TEST(EvaluatePlan, FootprintsAreThoseOfTheMapsAsked) {
   }
 }
 
+TEST(EvaluatePlan, MeasuringIsTheSameWithoutTheForecast) {
+  const Seen seen(2);
+  const Light& light = seen.scene.lights[0];
+  const absl::StatusOr<LightPlan> fitted = FourMaps(seen, light);
+  ASSERT_THAT(fitted, IsOk());
+  const LightView view = seen.View(light, fitted->border);
+  const absl::StatusOr<Figures> whole = EvaluatePlan(view, PlanOf(*fitted), Automatic());
+  const absl::StatusOr<Figures> measured = MeasurePlan(view, PlanOf(*fitted), Automatic());
+  ASSERT_THAT(whole, IsOk());
+  ASSERT_THAT(measured, IsOk());
+  EXPECT_TRUE(whole->wrong_share.has_value());
+  EXPECT_FALSE(measured->wrong_share.has_value());
+  EXPECT_EQ(measured->energy, whole->energy);
+  EXPECT_EQ(measured->footprint.p99, whole->footprint.p99);
+}
+
 TEST(EvaluatePlan, SaysWhatIsWrong) {
   const Seen seen(1);
   const Light& sun = seen.scene.lights[0];

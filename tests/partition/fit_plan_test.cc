@@ -13,6 +13,8 @@
 #include "optimizer/figures/foretell.h"
 #include "optimizer/fit.h"
 #include "optimizer/readback/needed_surfaces.h"
+#include "partition/evaluate_plan.h"
+#include "tests/partition/tracking/plan_walk.h"
 #include "tests/testing/matchers.h"
 #include "tests/testing/test_scene.h"
 
@@ -232,6 +234,43 @@ TEST(FitPlan, AGuardKeepsWhatIsServedAwayFromTheSides) {
     }
   }
   EXPECT_GT(num_covered, 100);
+}
+
+// What the plan says of its maps is of those who ask them, who keep to the guard; and so are depths.
+TEST(FitPlan, FiguresAndDepthsAreOfTheGuardedLookUp) {
+  const Case at(1);
+  const Light& light = at.scene.lights[0];
+  PlanOptions options = OptionsOf(4);
+  options.choose_by_forecast = false;
+  double unlike = 0.0;
+  for (const double guard : {0.0, 6.0}) {
+    options.guard_texels = guard;
+    const auto plan = FitPlan(at.surfaces, light, options);
+    ASSERT_THAT(plan, IsOk());
+    FitOptions fit = options.fit;
+    fit.border = BorderChoice::kAutomatic;
+    const auto view = ViewLight(at.surfaces, light, plan->border, fit);
+    ASSERT_THAT(view, IsOk());
+    const Plan maps = PlanOf(*plan);
+    const auto figures = EvaluatePlan(*view, maps, fit, guard);
+    ASSERT_THAT(figures, IsOk());
+    EXPECT_NEAR(plan->energy, figures->energy, 1e-9 * figures->energy);  // rounding
+    unlike = std::abs(EvaluatePlan(*view, maps, fit, 0.0)->energy / figures->energy - 1.0);
+
+    const auto look_up = PlanLookUp::Create(maps, light, guard);
+    ASSERT_THAT(look_up, IsOk());
+    const NeededSurfaces needed(at.surfaces, light, plan->border);
+    testing::ForEachReceiver(
+        at.surfaces, needed.words(), 1u << light.shadow_bit, [&](const Eigen::Vector3d& world) {
+          const int k = look_up->At(world).map;
+          if (k < 0) return;
+          const Eigen::Vector4d place = maps.maps[k].map_from_world * world.homogeneous();
+          constexpr double kRounding = 1e-7;
+          EXPECT_GE(place.z(), -kRounding * place.w());
+          EXPECT_LE(place.z(), (1.0 + kRounding) * place.w());
+        });
+  }
+  EXPECT_GT(unlike, 1e-6);  // the guard makes a difference
 }
 
 // A lamp between the boxes: no single map, and a plan that holds all the same.

@@ -91,7 +91,7 @@ TEST(MapDepths, SayWhetherARowFitsAndLayOneThatDoes) {
           MakeKeptMap(at.view, map.map_from_world, map.size, TrackerAction::kKept)->rays);
       matrices.push_back(map.map_from_world);
     }
-    for (const MapDepths& depths : FindMapDepths(at.view, at.fit, maps, matrices)) {
+    for (const MapDepths& depths : FindMapDepths(at.view, at.fit, maps, matrices, 0.0)) {
       EXPECT_TRUE(depths.Fits());
     }
     // Half the range, from its middle on.
@@ -99,7 +99,7 @@ TEST(MapDepths, SayWhetherARowFitsAndLayOneThatDoes) {
       matrices[k].row(2) = 2.0 * matrices[k].row(2) - matrices[k].row(3);
       plan.maps[k].map_from_world = matrices[k];
     }
-    const ScratchVector<MapDepths> spoilt = FindMapDepths(at.view, at.fit, maps, matrices);
+    const ScratchVector<MapDepths> spoilt = FindMapDepths(at.view, at.fit, maps, matrices, 0.0);
     EXPECT_GT(Count(at, plan, cover).served, 0);
     for (size_t k = 0; k < spoilt.size(); ++k) {
       if (!spoilt[k].IsAsked()) continue;

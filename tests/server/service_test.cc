@@ -59,6 +59,66 @@ TEST(Service, FitStreamGivesTheSameAsFit) {
   }
 }
 
+// Whole and in chunks, and frame by frame.
+TEST(Service, PlansComeAsMatricesDo) {
+  TestServer server;
+  v1::FitRequest request = YardFitRequest();
+  request.clear_map();
+  request.mutable_plan_options()->set_max_maps(3);
+  request.mutable_plan_options()->set_texels(90000);
+  const absl::StatusOr<v1::FitResult> want = AnswerFit(request, CallContext());
+  grpc::ClientContext whole, chunks;
+  v1::FitResult result;
+  ExpectOk(server.stub().Fit(&whole, request, &result));
+  ExpectSame(result, want);
+  EXPECT_EQ(result.lights(0).plan().maps_size(), 3);
+  ExpectOk(FitInStream(server.stub(), request, 100000, &chunks, &result));
+  ExpectSame(result, want);
+
+  v1::TrackSetup setup;
+  *setup.mutable_plan_options() = request.plan_options();
+  auto session = TrackSession::Begin(setup);
+  ASSERT_THAT(session, testing::IsOk());
+  grpc::ClientContext context;
+  const auto stream = server.stub().Track(&context);
+  v1::TrackRequest message;
+  *message.mutable_setup() = setup;
+  ASSERT_TRUE(stream->Write(message));
+  for (int f = 0; f < 2; ++f) {
+    const ReadbackFile file = testing::FrameOfYard(f);
+    const auto frame = testing::RequestOf<v1::TrackFrame>(file.View(), Yard().lights);
+    *message.mutable_frame() = frame;
+    ASSERT_TRUE(stream->Write(message));
+    v1::TrackResult tracked;
+    ASSERT_TRUE(stream->Read(&tracked));
+    EXPECT_EQ(tracked.result().lights(0).shot().plan().is_new(), f == 0);
+    EXPECT_EQ(tracked.SerializeAsString(),
+              session->Update(frame, file.View(), {}).SerializeAsString());
+  }
+  stream->WritesDone();
+  ExpectOk(stream->Finish());
+}
+
+TEST(Service, PlansOfMoreMapsThanTheServerTakesAreRefused) {
+  ServerOptions options = testing::QuietOptions();
+  options.limits.calls.max_maps = 2;
+  TestServer server(options);
+  v1::FitRequest request = YardFitRequest();
+  request.clear_map();
+  request.mutable_plan_options()->set_max_maps(3);
+  grpc::ClientContext fit, track;
+  v1::FitResult result;
+  const std::string words = "plan_options.max_maps = 3, and this server takes at most 2";
+  ExpectRefused(
+      server.stub().Fit(&fit, request, &result), grpc::StatusCode::RESOURCE_EXHAUSTED, words);
+  const auto stream = server.stub().Track(&track);
+  v1::TrackRequest message;
+  *message.mutable_setup()->mutable_plan_options() = request.plan_options();
+  stream->Write(message);
+  stream->WritesDone();
+  ExpectRefused(stream->Finish(), grpc::StatusCode::RESOURCE_EXHAUSTED, words);
+}
+
 TEST(Service, FacingPlanesComeWholeOrInChunks) {
   TestServer server;
   v1::FitRequest request = YardFitRequest();

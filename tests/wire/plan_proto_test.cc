@@ -197,6 +197,11 @@ TEST(PlanOptionsProto, ReadsBackAndSaysWhatIsWrong) {
   ASSERT_TRUE(back->each.has_value());
   EXPECT_EQ(back->each->width, 256);
   EXPECT_EQ(back->each->height, 128);
+  // What is absent is the default.
+  back = PlanOptionsFromProto(v1::PlanOptions(), options.fit);
+  ASSERT_THAT(back, IsOk());
+  EXPECT_EQ(PlanOptionsToProto(*back).SerializeAsString(),
+            PlanOptionsToProto(PlanOptions()).SerializeAsString());
   v1::PlanOptions bad = PlanOptionsToProto(options);
   bad.set_max_maps(33);
   EXPECT_THAT(PlanOptionsFromProto(bad, options.fit),
