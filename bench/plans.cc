@@ -8,6 +8,9 @@
 //       more; the same over other rows; time in fits of one map. --csv: per light and row, all of
 //       it.
 //
+// Virtual pages have a row at these texels and one at 2048 x 2048; pages, cubes and paraboloids are
+// over the lights that they are for.
+//
 // The tables of docs/plans.md.
 #include <CLI/CLI.hpp>
 #include <algorithm>

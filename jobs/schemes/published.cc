@@ -50,9 +50,9 @@ Scheme MethodScheme(Method method, const SchemeBudget& budget) {
 }
 
 std::string SlicesName(Method method, int num_maps) {
-  const std::string slices = absl::StrCat("ZP", num_maps);
-  if (method == Method::kFocused) return slices;
-  return absl::StrCat(slices, "+", method == Method::kLispsm ? "LiSPSM" : MethodName(method));
+  if (method == Method::kFocused) return absl::StrCat("ZP", num_maps);
+  const char* name = method == Method::kLispsm ? "LiSPSM" : MethodName(method);
+  return absl::StrCat("ZP", num_maps, "+", name);
 }
 
 Scheme SlicesScheme(Method method, PlanShapes shapes, const SchemeBudget& budget) {
