@@ -147,7 +147,7 @@ void CheckPlans(const CLI::App& app, AllocateFlags* flags) {
   CheckNotUsedByPlans(app);
   plan->has_rules = HasSizeFlags(app);
   plan->rules = flags->rules;
-  plan->texels = flags->budget_texels;
+  plan->texels = *flags->budget_texels;
 }
 
 absl::Status NoTolerance(const std::string& text) {

@@ -7,7 +7,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "cli/flags/allocate_flags.h"
-#include "cli/flags/fit_flags.h"
 #include "optimizer/sizing/map_sizes.h"
 #include "partition/plan.h"
 
@@ -82,7 +81,8 @@ void DeclareMapsFlags(CLI::App* app, PlanFlags* flags) {
       ->group(kGroup);
 }
 
-void DeclarePlanFlags(CLI::App* app, PlanFlags* flags) {
+void DeclarePlanFlags(CLI::App* app, MapSize one_map, PlanFlags* flags) {
+  flags->texels = TexelsOf(one_map);
   DeclareMapsFlags(app, flags);
   app->add_option_function<std::string>(
          "--texels",
@@ -93,8 +93,12 @@ void DeclarePlanFlags(CLI::App* app, PlanFlags* flags) {
            }
            flags->texels = *texels;
          },
-         "With --maps: texels of all maps of one light together, as a size or a number; never "
-         "more, and sizes may differ [1024x1024, as one map has]")
+         absl::StrCat("With --maps: texels of all maps of one light together, as a size or a "
+                      "number; never more, and sizes may differ [",
+                      one_map.width,
+                      "x",
+                      one_map.height,
+                      ", as one map has]"))
       ->type_name("WIDTHxHEIGHT|TEXELS")
       ->group(kGroup);
   DeclareSizeFlags(app, "Sizes of several maps [any, unless one of these is given]", &flags->rules);
@@ -108,8 +112,8 @@ void CheckNotUsedByPlans(const CLI::App& app) {
   }
 }
 
-void CheckPlanFlags(const CLI::App& app, FitFlags* flags) {
-  if (flags->plan.max_maps == 1) {
+void CheckPlanFlags(const CLI::App& app, MapSize map, PlanFlags* flags) {
+  if (flags->max_maps == 1) {
     for (const char* flag :
          {"--texels", "--guard", "--multiple", "--power-of-two", "--min-side", "--max-side"}) {
       if (CountOf(app, flag) == 0) continue;
@@ -119,38 +123,38 @@ void CheckPlanFlags(const CLI::App& app, FitFlags* flags) {
     return;
   }
   CheckNotUsedByPlans(app);
-  flags->plan.has_rules = HasSizeFlags(app);
+  flags->has_rules = HasSizeFlags(app);
   if (app.count("--map") == 0) return;
-  if (flags->plan.has_rules) {
+  if (flags->has_rules) {
     throw CLI::ValidationError("--map",
                                "is the size of every map, and --multiple, --power-of-two, "
                                "--min-side and --max-side choose sizes: give one or the other");
   }
-  if (flags->plan.texels.has_value()) {
+  if (app.count("--texels") > 0) {
     throw CLI::ValidationError("--texels",
                                "is what all maps of a light have together, and --map the size of "
                                "each: give one of the two");
   }
-  flags->plan.each = flags->map;
-  if (2.0 * flags->plan.guard_texels < std::min(flags->map.width, flags->map.height)) return;
+  flags->each = map;
+  if (2.0 * flags->guard_texels < std::min(map.width, map.height)) return;
   throw CLI::ValidationError("--guard",
-                             absl::StrCat(flags->plan.guard_texels,
+                             absl::StrCat(flags->guard_texels,
                                           " on every side leaves nothing of maps of --map ",
-                                          flags->map.width,
+                                          map.width,
                                           "x",
-                                          flags->map.height,
+                                          map.height,
                                           " texels"));
 }
 
-std::optional<PlanOptions> PlanOptionsOf(const FitFlags& flags) {
-  if (flags.plan.max_maps == 1) return std::nullopt;
+std::optional<PlanOptions> PlanOptionsOf(const PlanFlags& flags, const FitOptions& fit) {
+  if (flags.max_maps == 1) return std::nullopt;
   PlanOptions options;
-  options.fit = flags.options;
-  options.max_maps = flags.plan.max_maps;
-  options.texels = flags.plan.texels.value_or(TexelsOf(FitFlags().map));
-  options.each = flags.plan.each;
-  if (flags.plan.has_rules) options.sizes = flags.plan.rules;
-  options.guard_texels = flags.plan.guard_texels;
+  options.fit = fit;
+  options.max_maps = flags.max_maps;
+  options.texels = flags.texels;
+  options.each = flags.each;
+  if (flags.has_rules) options.sizes = flags.rules;
+  options.guard_texels = flags.guard_texels;
   return options;
 }
 
