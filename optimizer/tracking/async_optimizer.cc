@@ -56,19 +56,36 @@ void Update(const Submission& submission, Tracker* tracker, FrameMatrices* matri
     return;
   }
   tracker->set_options(submission.options);
-  const auto results = tracker->Update(readback.View(), readback.lights, readback.map);
+  FineCover cover;
+  const auto results = tracker->Update(readback.View(&cover), readback.lights, readback.map);
   for (size_t i = 0; i < num_lights; ++i) Publish(results[i], &matrices->lights[i]);
 }
 
 }  // namespace
 
-Readback FrameReadback::View() const {
+FineCover FrameFineCover::View() const {
+  FineCover view;
+  view.columns = columns;
+  view.rows = rows;
+  view.nearest = nearest;
+  view.furthest = furthest;
+  view.shadow_bits = shadow_bits;
+  view.lit_bits = lit_bits;
+  view.lit_lights = lit_lights;
+  return view;
+}
+
+Readback FrameReadback::View(FineCover* cover) const {
   Readback view;
   view.camera = camera;
   view.depth = depth;
   view.depth_kind = depth_kind;
   view.shadow_bits = shadow_bits;
   view.facing_bits = facing_bits;
+  if (cover != nullptr && (fine_cover.columns != 0 || fine_cover.rows != 0)) {
+    *cover = fine_cover.View();
+    view.fine_cover = cover;
+  }
   return view;
 }
 

@@ -47,6 +47,16 @@ inline void Fill(const SyntheticReadback& view,
   readback->map = {1024, 1024};
 }
 
+// The same view with more pixels.
+inline void FillFineCover(const SyntheticReadback& fine, FrameReadback* readback) {
+  FrameFineCover& cover = readback->fine_cover;
+  cover.columns = fine.camera.width;
+  cover.rows = fine.camera.height;
+  cover.nearest.assign(fine.depth.begin(), fine.depth.end());
+  cover.furthest.assign(fine.depth.begin(), fine.depth.end());
+  cover.shadow_bits.assign(fine.shadow_bits.begin(), fine.shadow_bits.end());
+}
+
 // Ends the program when it cannot start.
 inline AsyncOptimizer StartOptimizer(const TrackerOptions& options = {}) {
   return std::move(AsyncOptimizer::Start(options).value());
