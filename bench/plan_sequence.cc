@@ -25,8 +25,8 @@
 #include "optimizer/fit.h"
 #include "optimizer/readback/needed_surfaces.h"
 #include "optimizer/tracking/tracker.h"
-#include "partition/plan_crawl.h"
-#include "partition/plan_tracker.h"
+#include "partition/tracking/plan_crawl.h"
+#include "partition/tracking/plan_tracker.h"
 #include "tests/testing/box_scene.h"
 
 namespace lightfit {

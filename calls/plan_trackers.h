@@ -14,7 +14,7 @@
 #include "calls/request_lights.h"
 #include "lightfit/v1/shot.pb.h"
 #include "optimizer/readback/readback.h"
-#include "partition/plan_tracker.h"
+#include "partition/tracking/plan_tracker.h"
 #include "wire/result_json.h"
 
 namespace lightfit {

@@ -51,6 +51,9 @@ std::function<int()> DeclareShot(CLI::App* app) {
 
 int RunShotVerb(const ShotFlags& flags) {
   absl::Status status = ValidateTrackerOptions(TrackerOptionsOf(flags));
+  if (const auto plans = PlanTrackerOptionsOf(flags); status.ok() && plans.has_value()) {
+    status = ValidatePlanTrackerOptions(*plans);
+  }
   if (!status.ok()) return Fail(kExitUsage, status);
   const absl::StatusOr<ShotJob> job = MakeShotJob(flags);
   if (!job.ok()) return Fail(kExitBadInput, job.status());

@@ -3,8 +3,28 @@
 #
 # These name the files that they were made of with their folder. One that ccache had kept from a
 # clone in another folder would be given out in this one, and clang then looks for files that may
-# not be there any more.
+# not be there any more. Nor may ccache tell them apart by their bytes, or nothing that uses them is
+# found from another folder: NAME.pch.sum, the sum of all that was precompiled, stands for NAME.pch
+# (CCACHE_PCH_EXTSUM in scripts/common.sh).
+pch='' dependencies='' previous='' is_pch=''
 for argument in "$@"; do
-  if [ "$argument" = -emit-pch ]; then exec "$@"; fi
+  case $previous in
+    -o) pch=$argument ;;
+    -MF) dependencies=$argument ;;
+  esac
+  previous=$argument
+  if [ "$argument" = -emit-pch ]; then is_pch=1; fi
 done
-exec ccache "$@"
+if [ -z "$is_pch" ]; then
+  # CMake gives clang a path that ccache does not know for one, and so does not make relative.
+  for argument in "$@"; do
+    shift
+    case $argument in "$PWD"/*/cmake_pch.hxx) argument=${argument#"$PWD/"} ;; esac
+    set -- "$@" "$argument"
+  done
+  exec ccache "$@"
+fi
+
+rm -f "$pch.sum"
+"$@" || exit
+sed '1s/^[^:]*://; s/\\$//' "$dependencies" | xargs sha256sum | cut -d ' ' -f 1 | sha256sum >"$pch.sum"

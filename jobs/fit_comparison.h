@@ -28,7 +28,7 @@ struct FitComparison {
 
   // Where plans were asked for: the light's answer. The others are then single maps of the texels
   // that all maps of the plan may have together, and the time is the plan's.
-  std::optional<absl::StatusOr<JudgedPlan>> plan;
+  std::optional<absl::StatusOr<JudgedPlan>> plan = std::nullopt;
 
   // Whether the light has its answer, and what is said of it whether plan or matrix.
   const absl::Status& status() const { return plan.has_value() ? plan->status() : final.status(); }

@@ -26,11 +26,7 @@ MapSize WholeSize(const CellMap& map, double texels) {
   return {std::min(width, kMaxMapSide), std::min(height, kMaxMapSide)};
 }
 
-struct MapOfCell {
-  Eigen::Matrix3d map_from_ray;  // of ServedRays' rays
-  MapSize size;
-  CoverOfCell cover;
-};
+}  // namespace
 
 absl::StatusOr<ScratchVector<MapOfCell>> MapsOfCells(const CellFitter& fitter,
                                                      const Cells& cells,
@@ -61,8 +57,6 @@ absl::StatusOr<ScratchVector<MapOfCell>> MapsOfCells(const CellFitter& fitter,
   }
   return maps;
 }
-
-}  // namespace
 
 absl::StatusOr<LightPlan> FinishPlan(const LightView& view,
                                      const CellFitter& fitter,
@@ -120,8 +114,8 @@ std::optional<CoverOfCell> FindCoverOfCell(const ServedRays& rays, Bins bins, co
     const RayBin& bin = rays.bins[index];
     for (const Eigen::Vector3d& ray : bin.hull) {
       const double unit = (light_from_ray * ray).norm();
-      cover.near =
-          std::min(cover.near, bin.nearest * cover.cone.normalized_from_ray.row(2).dot(ray) / unit);
+      cover.near = std::min(
+          cover.near, bin.distance.near * cover.cone.normalized_from_ray.row(2).dot(ray) / unit);
     }
   }
   return cover;

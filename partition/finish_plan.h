@@ -37,6 +37,17 @@ struct CoverOfCell {
   double near = 0.0;
 };
 
+struct MapOfCell {
+  Eigen::Matrix3d map_from_ray;  // of ServedRays' rays; not mirrored
+  MapSize size;
+  CoverOfCell cover;
+};
+
+// The maps of cells, in whole texels and with their margins. FailedPrecondition as FinishPlan().
+absl::StatusOr<ScratchVector<MapOfCell>> MapsOfCells(const CellFitter& fitter,
+                                                     const Cells& cells,
+                                                     const PlanOptions& options);
+
 // Nothing where CoverBins() gives nothing.
 std::optional<CoverOfCell> FindCoverOfCell(const ServedRays& rays, Bins bins, const Light& light);
 

@@ -4,15 +4,11 @@
 #include <cmath>
 #include <utility>
 
-#include "absl/strings/str_format.h"
-#include "base/stop.h"
 #include "optimizer/choose_fit.h"
 #include "optimizer/figures/foretell.h"
 #include "optimizer/fit.h"
-#include "partition/divided_maps.h"
-#include "partition/find_cells.h"
 #include "partition/finish_plan.h"
-#include "partition/sphere_cells.h"
+#include "partition/plan_cells.h"
 
 namespace lightfit {
 
@@ -83,78 +79,14 @@ class Choice {
   std::optional<LightPlan> best_;
 };
 
-// Plans of one light with one border.
-class BorderPlanner {
- public:
-  // The view and the options must outlive the planner.
-  BorderPlanner(const LightView& view,
-                const ServedRays& rays,
-                const FitOptions& fit,
-                const PlanOptions& options)
-      : view_(view),
-        options_(options),
-        fitter_(rays, *view.light, fit),
-        grown_(GrowCells(fitter_, options.max_maps)) {}
-
-  // FailedPrecondition where there is none of so many maps.
-  absl::StatusOr<LightPlan> PlanOf(int num_maps) const {
-    const double texels = TexelsOf(num_maps);
-    Cells cells = GrownOf(num_maps);
-    if (view_.light->kind == Light::Kind::kPoint) {
-      Cells clusters = ClusterCells(fitter_, num_maps, texels);
-      if (!clusters.empty() &&
-          (cells.empty() || DividedMaps(fitter_, clusters, texels).Energy() <
-                                DividedMaps(fitter_, cells, texels).Energy())) {
-        cells = std::move(clusters);
-      }
-    }
-    if (absl::Status status = CheckStop(*view_.light); !status.ok()) return status;
-    if (cells.empty()) {
-      return view_.cover.ok()
-                 ? absl::FailedPreconditionError(absl::StrFormat(
-                       "light \"%s\": no map can be fitted to what it shows", view_.light->name))
-                 : SurroundedByError(num_maps);
-    }
-    cells = AlternateCells(fitter_, cells, texels);
-    if (absl::Status status = CheckStop(*view_.light); !status.ok()) return status;
-    return FinishPlan(view_, fitter_, cells, options_);
-  }
-
- private:
-  double TexelsOf(int num_maps) const {
-    if (!options_.each.has_value()) return static_cast<double>(options_.texels);
-    return static_cast<double>(options_.each->width) * options_.each->height * num_maps;
-  }
-
-  Cells GrownOf(int num_maps) const {
-    if (grown_.empty()) return {};
-    return grown_[std::min<size_t>(num_maps, grown_.size()) - 1];
-  }
-
-  // Receivers all around, and too few maps for them.
-  absl::Status SurroundedByError(int num_maps) const {
-    // Any rays at all have a plan of so many: one for each face of a cube.
-    constexpr int kAlwaysEnough = 6;
-    int enough = num_maps + 1;
-    while (enough < kAlwaysEnough && ClusterCells(fitter_, enough, TexelsOf(enough)).empty()) {
-      ++enough;
-    }
-    return absl::FailedPreconditionError(absl::StrFormat(
-        "light \"%s\": at (%g, %g, %g) it hangs among its receivers, and no %d maps "
-        "have all of them in front; %d would do",
-        view_.light->name,
-        view_.light->position.x(),
-        view_.light->position.y(),
-        view_.light->position.z(),
-        num_maps,
-        enough));
-  }
-
-  const LightView& view_;
-  const PlanOptions& options_;
-  CellFitter fitter_;
-  ScratchVector<Cells> grown_;
-};
+absl::StatusOr<LightPlan> PlanOfCells(const LightView& view,
+                                      const PlanCells& plan_cells,
+                                      int num_maps,
+                                      const PlanOptions& options) {
+  const absl::StatusOr<Cells> cells = plan_cells.Of(num_maps);
+  if (!cells.ok()) return cells.status();
+  return FinishPlan(view, plan_cells.fitter(), *cells, options);
+}
 
 // 2, 4, 8 ... below `most`, and `most`.
 ScratchVector<int> CountsUpTo(int most) {
@@ -176,14 +108,14 @@ absl::StatusOr<LightPlan> FitInBorder(const Surfaces& surfaces,
   if (!view.ok()) return view.status();
   const absl::StatusOr<ServedRays> rays = FindServedRays(*view, fit);
   if (!rays.ok()) return rays.status();
-  const BorderPlanner planner(*view, *rays, fit, options);
-  if (choice == nullptr) return planner.PlanOf(options.max_maps);
+  const PlanCells cells(*rays, light, fit, options);
+  if (choice == nullptr) return PlanOfCells(*view, cells, options.max_maps, options);
   absl::StatusOr<LightPlan> last = PlanOfOneMap(options, *view);
   if (last.ok()) {
     if (absl::Status status = choice->Offer(*last); !status.ok()) return status;
   }
   for (const int count : CountsUpTo(options.max_maps)) {
-    last = planner.PlanOf(count);
+    last = PlanOfCells(*view, cells, count, options);
     if (absl::IsCancelled(last.status())) return last;
     if (!last.ok()) continue;
     if (absl::Status status = choice->Offer(*last); !status.ok()) return status;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "base/stop.h"
@@ -14,6 +15,7 @@
 #include "optimizer/energy/footprint.h"
 #include "optimizer/readback/needed_surfaces.h"
 #include "partition/pixel_rays.h"
+#include "partition/ray_leaves.h"
 
 namespace lightfit {
 
@@ -28,37 +30,9 @@ struct Item {
   Eigen::Vector3d direction;  // of its ray, unit
   int x = 0, y = 0;           // of a covered pixel
   int boundary = -1;          // index in the view's samples; -1 for a covered pixel
-};
 
-// Sorts items into a tree of halves and calls visit(begin, end) for each leaf, left to right.
-template <typename Visitor>
-void ForEachLeaf(ScratchVector<Item>& items,
-                 size_t begin,
-                 size_t end,
-                 size_t most_in_leaf,
-                 const Visitor& visit) {
-  if (end - begin <= most_in_leaf) {
-    visit(begin, end);
-    return;
-  }
-  Eigen::AlignedBox3d box;
-  for (size_t i = begin; i < end; ++i) box.extend(items[i].direction);
-  int along = 0;
-  box.sizes().maxCoeff(&along);
-  const size_t middle = begin + (end - begin) / 2;
-  std::nth_element(items.begin() + begin,
-                   items.begin() + middle,
-                   items.begin() + end,
-                   [along](const Item& a, const Item& b) {
-                     // The same order on every machine.
-                     const auto key = [along](const Item& item) {
-                       return std::tuple(item.direction(along), item.boundary, item.y, item.x);
-                     };
-                     return key(a) < key(b);
-                   });
-  ForEachLeaf(items, begin, middle, most_in_leaf, visit);
-  ForEachLeaf(items, middle, end, most_in_leaf, visit);
-}
+  std::tuple<int, int, int> Key() const { return {boundary, y, x}; }
+};
 
 class Finder {
  public:
@@ -122,13 +96,14 @@ class Finder {
       const Item& item = items_[i];
       bin.middle += item.direction;
       if (item.boundary >= 0) {
-        AddSample(view_.samples.At(item.boundary));
+        AddSample(view_.samples.At(item.boundary), /*is_boundary=*/true);
         ++result_.num_boundary;
         continue;
       }
       result_.pixels.push_back({item.x, item.y});
       const double distance = DistanceOf(item);
-      bin.nearest = bin.num_covered == 0 ? distance : std::min(bin.nearest, distance);
+      bin.distance.near = std::min(bin.distance.near, distance);
+      bin.distance.far = std::max(bin.distance.far, distance);
       ++bin.num_covered;
       AddCovered(item, &rays);
     }
@@ -165,24 +140,23 @@ class Finder {
     sample.D.row(0) = T2.cross(sample.X) / V;
     sample.D.row(1) = sample.X.cross(T1) / V;
     if (!sample.D.allFinite()) return;
-    sample.weight = -1.0;  // told from the others until they are weighed
     sample.edge_normal.setZero();
-    AddSample(sample);
+    AddSample(sample, /*is_boundary=*/false);
   }
 
-  void AddSample(const Sample& sample) {
+  void AddSample(const Sample& sample, bool is_boundary) {
     result_.samples.push_back(
-        {sample.X, ToSymmetricVector(MetricTensor(sample, metric_)), sample.weight});
+        {sample.X, ToSymmetricVector(MetricTensor(sample, metric_)), sample.weight, is_boundary});
   }
 
   void WeighFloor() {
     double boundary_weight = 0.0;
     int64_t num_floor = 0;
     for (const RaySample& sample : result_.samples) {
-      if (sample.weight < 0.0) {
-        ++num_floor;
-      } else {
+      if (sample.is_boundary) {
         boundary_weight += sample.weight;
+      } else {
+        ++num_floor;
       }
     }
     if (num_floor == 0) return;
@@ -190,7 +164,7 @@ class Finder {
                                                       static_cast<double>(num_floor)
                                                 : 1.0;
     for (RaySample& sample : result_.samples) {
-      if (sample.weight < 0.0) sample.weight = weight;
+      if (!sample.is_boundary) sample.weight = weight;
     }
   }
 

@@ -17,6 +17,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 
 #include "absl/status/statusor.h"
 #include "base/scratch.h"
@@ -33,7 +34,12 @@ struct RaySample {
   Eigen::Vector3d X;
   SymmetricVector G;
   double weight = 1.0;
+  bool is_boundary = true;  // else a covered pixel
 };
+
+// Of nothing: what widens it is what it has.
+inline constexpr DepthRange kNoDepth = {std::numeric_limits<double>::infinity(),
+                                        -std::numeric_limits<double>::infinity()};
 
 struct RayBin {
   Eigen::Vector3d middle;  // mean of the unit rays to what is in it
@@ -42,7 +48,7 @@ struct RayBin {
   int samples_begin = 0, samples_end = 0;  // in ServedRays::samples
   int pixels_begin = 0, pixels_end = 0;    // the covered ones, in ServedRays::pixels
   int num_covered = 0;                     // pixels
-  double nearest = 0.0;                    // of the covered ones, from a point light; world units
+  DepthRange distance = kNoDepth;          // of the covered ones, from a point light; world units
 };
 
 struct ServedRays {

@@ -84,7 +84,7 @@ LineChart ChartOf(const ShotJob& job, const ShotRows& rows, size_t light, const 
       const ShotRow* row = light < frame.size() ? &frame[light] : nullptr;
       line.values.push_back(row == nullptr ? std::nullopt : kind.value(*row));
       line.dots.push_back(kind.has_dots && mode == ShotMode::kTracked && row != nullptr &&
-                          row->moved);
+                          row->num_moved > 0);
     }
     chart.lines.push_back(std::move(line));
   }
@@ -92,12 +92,11 @@ LineChart ChartOf(const ShotJob& job, const ShotRows& rows, size_t light, const 
 }
 
 void DrawTitle(const ShotJob& job, const Typeface& typeface, Canvas* canvas) {
-  const std::string title = absl::StrFormat("%s: %d %s, map %d x %d texels",
+  const std::string title = absl::StrFormat("%s: %d %s, %s",
                                             job.name,
                                             job.frames.size(),
                                             job.frames.size() == 1 ? "frame" : "frames",
-                                            job.map.width,
-                                            job.map.height);
+                                            MapsText(job));
   typeface.Draw(kMargin, 42, title, {.size_px = 24, .color = kTextColor, .bold = true}, canvas);
   int x = kMargin;
   const int baseline = 76;
@@ -109,7 +108,7 @@ void DrawTitle(const ShotJob& job, const Typeface& typeface, Canvas* canvas) {
       canvas->DrawDot({x + 13.0, baseline - 5.5}, 4.5, ModeColor(mode));
     }
     std::string name = ShotModeName(mode);
-    if (mode == ShotMode::kTracked) name += " (dot: the map moves)";
+    if (mode == ShotMode::kTracked) name += " (dot: a map moves)";
     typeface.Draw(x + 36, baseline, name, style, canvas);
     x += 36 + typeface.Width(name, style) + kLegendGap;
   }

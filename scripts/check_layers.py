@@ -24,7 +24,8 @@ FIGURES = f"{SEARCH} optimizer/figures"
 FIT = f"{FIGURES} optimizer"
 SIZING = f"{FIT} optimizer/sizing"
 CORE = f"{SIZING} optimizer/tracking"
-WIRE = f"{CORE} partition lightfit proto wire"
+PLANS = f"{CORE} partition partition/tracking"
+WIRE = f"{PLANS} lightfit proto wire"
 IO = f"{WIRE} io"
 JOBS = f"{IO} jobs jobs/*"
 EVERYTHING_BELOW_CLI = f"{JOBS} methods partition/* render render/* picture calls server"
@@ -41,6 +42,7 @@ MAY_INCLUDE = {
     "optimizer/tracking": CORE,
     "methods": "base geometry",
     "partition": CORE,
+    "partition/tracking": f"{CORE} partition",
     "partition/published": f"{CORE} methods partition",
     "partition/shipped": f"{CORE} methods partition",
     "render": f"{CORE} partition",

@@ -4,7 +4,8 @@
 
 # A clone in another folder finds this one's objects in ccache: paths are hashed relative to the
 # repository, and neither the precompiled headers' own flags nor __TIME__ stand in the way.
-export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1 CCACHE_SLOPPINESS=pch_defines,time_macros
+export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1 CCACHE_SLOPPINESS=pch_defines,time_macros \
+  CCACHE_PCH_EXTSUM=1
 
 say() { printf '\n== %s\n' "$*" >&2; }
 

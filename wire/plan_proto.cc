@@ -49,7 +49,9 @@ absl::StatusOr<v1::Plan> PlanToProto(const LightPlan& plan,
         MatrixToProto(ClipFromMap(map.map, clip) * map.map_from_world);
     added.set_coarseness(1.0 / std::cbrt(std::abs(map_from_ray->determinant())));  // math.md (18)
     added.set_energy(map.figures.energy);
-    *added.mutable_footprint() = FootprintToProto(map.figures.footprint, with_quantiles);
+    if (map.figures.footprint.rms > 0.0) {
+      *added.mutable_footprint() = FootprintToProto(map.figures.footprint, with_quantiles);
+    }
     added.set_samples(map.figures.samples.used);
   }
   return proto;

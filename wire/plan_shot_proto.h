@@ -8,7 +8,7 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 #include "lightfit/v1/shot.pb.h"
-#include "partition/plan_tracker.h"
+#include "partition/tracking/plan_tracker.h"
 
 namespace lightfit {
 

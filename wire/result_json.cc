@@ -112,6 +112,7 @@ void SetSeveralMaps(const LightFit& fit, const FitReport& report, v1::LightResul
   if (figures.wrong_share.has_value()) {
     *proto->mutable_foretold_wrong() = ForetoldToProto(*figures.wrong_share, fit);
   }
+  if (figures.samples.used == 0) return;  // of a whole shot: its frames have them
   *proto->mutable_footprint() =
       FootprintToProto(figures.footprint, report.options.compute_statistics);
   *proto->mutable_samples() = SampleCountsToProto(figures.samples);

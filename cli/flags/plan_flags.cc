@@ -26,7 +26,15 @@ constexpr Unused kUnusedByPlans[] = {
     {"--affine", "the maps of a plan are parallelograms of least energy"},
     {"--cover-readback", "plans do not look at a finer read-back yet"},
     {"--summary", "a plan is fitted to the pixels of a read-back, and a summary has none"},
+    {"--replace-below", "a plan is kept by its energy; --stability says for how much of it"},
+    {"--rounds", "the plan of a shot is fitted to its samples, and weighs them as it goes"},
 };
+
+// Verbs have some of the options each.
+size_t CountOf(const CLI::App& app, const char* flag) {
+  const CLI::Option* option = app.get_option_no_throw(flag);
+  return option != nullptr ? option->count() : 0;
+}
 
 }  // namespace
 
@@ -73,7 +81,7 @@ void CheckPlanFlags(const CLI::App& app, FitFlags* flags) {
     return;
   }
   for (const Unused& unused : kUnusedByPlans) {
-    if (app.count(unused.flag) == 0) continue;
+    if (CountOf(app, unused.flag) == 0) continue;
     throw CLI::ValidationError("--maps",
                                absl::StrCat("does not go with ", unused.flag, ": ", unused.reason));
   }

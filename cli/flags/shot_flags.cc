@@ -16,14 +16,18 @@ constexpr char kExamples[] =
     "  lightfit shot readbacks/walk --lights scene.json\n"
     "  lightfit shot readbacks/walk --lights scene.json --tracked --stability 0.8 -o walk_stable\n"
     "  lightfit shot frames.txt --lights scene.json --per-shot --map 2048x2048 --clip opengl\n"
+    "  lightfit shot readbacks/walk --lights scene.json --maps 4 --texels 2048x2048\n"
     "\n"
     "Writes into the output folder:\n"
     "  per-frame/FRAME.json  every frame its own best matrix: finest, and it crawls\n"
     "  tracked/FRAME.json    a matrix is kept while it is good enough, or moved by whole texels\n"
     "  per-shot/FRAME.json   one matrix per light for the whole shot: it never crawls;\n"
     "  per-shot.json         ... the same matrix once\n"
-    "  summaries/            what per-shot was fitted to, for lightfit fit --summary\n"
+    "  summaries/            what per-shot was fitted to, for lightfit fit --summary; not with "
+    "--maps\n"
     "  shot.csv, shot.png    energy, footprint and crawl of every frame\n"
+    "With --maps a light has a plan of several maps wherever it would have a matrix; when tracked\n"
+    "each map is kept, moved by whole texels or replaced by itself.\n"
     "\n"
     "A run that was stopped goes on where it was: a frame whose file, lights and options are the\n"
     "same is not computed again, and results are the same to the last byte. A frame that cannot\n"
@@ -112,6 +116,7 @@ void DeclareShotFlags(CLI::App* app, ShotFlags* flags) {
   DeclareCameraFlags(
       app, "Camera; --frame is that of the first read-back, one camera is for all", &flags->fit);
   DeclareMapFlags(app, "Map", &flags->fit);
+  DeclarePlanFlags(app, &flags->fit.plan);
   DeclareMethodFlags(app, &flags->fit.options);
   app->add_flag("--as-published",
                 flags->fit.as_published,
@@ -134,6 +139,7 @@ void DeclareShotFlags(CLI::App* app, ShotFlags* flags) {
       ->group("Per shot");
   DeclareOutput(app, flags);
   app->footer(kExamples);
+  app->callback([app, flags] { CheckPlanFlags(*app, &flags->fit); });
 }
 
 TrackerOptions TrackerOptionsOf(const ShotFlags& flags) {
@@ -142,6 +148,16 @@ TrackerOptions TrackerOptionsOf(const ShotFlags& flags) {
       as_published ? TrackerOptions::AsPublished() : TrackerOptions::ForStability(flags.stability);
   options.fit = as_published ? FitOptions::AsPublished(flags.fit.options) : flags.fit.options;
   options.replace_below = flags.replace_below.value_or(options.replace_below);
+  options.update_every_frames = flags.update_every_frames.value_or(options.update_every_frames);
+  options.cover_margin_percent = flags.cover_margin_percent.value_or(options.cover_margin_percent);
+  return options;
+}
+
+std::optional<PlanTrackerOptions> PlanTrackerOptionsOf(const ShotFlags& flags) {
+  const std::optional<PlanOptions> plan = PlanOptionsOf(flags.fit);
+  if (!plan.has_value()) return std::nullopt;
+  PlanTrackerOptions options = PlanTrackerOptions::ForStability(flags.stability);
+  options.plan = *plan;
   options.update_every_frames = flags.update_every_frames.value_or(options.update_every_frames);
   options.cover_margin_percent = flags.cover_margin_percent.value_or(options.cover_margin_percent);
   return options;
@@ -162,6 +178,7 @@ absl::StatusOr<ShotJob> MakeShotJob(const ShotFlags& flags) {
   job.map = flags.fit.map;
   job.clip = flags.fit.clip;
   job.tracker = TrackerOptionsOf(flags);
+  job.plans = PlanTrackerOptionsOf(flags);
   job.rounds = flags.rounds;
   job.folder = flags.output.empty() ? job.name + "_lightfit" : flags.output;
   job.force = flags.force;

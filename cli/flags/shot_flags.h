@@ -44,6 +44,9 @@ void DeclareShotFlags(CLI::App* app, ShotFlags* flags);
 // The rule by which a tracked matrix is kept, and in it how all modes fit.
 TrackerOptions TrackerOptionsOf(const ShotFlags& flags);
 
+// The same of plans; nothing where one map of each light is wanted.
+std::optional<PlanTrackerOptions> PlanTrackerOptionsOf(const ShotFlags& flags);
+
 // With the frames listed and the lights and cameras read. A camera that is missing is in its
 // frame's status.
 absl::StatusOr<ShotJob> MakeShotJob(const ShotFlags& flags);

@@ -15,6 +15,10 @@
 namespace lightfit::cli {
 namespace {
 
+constexpr char kPlanLegend[] =
+    "Moved: of all maps of all frames, those whose texels move over surfaces. A pixel that asks\n"
+    "another map than in the frame before counts as drawn anew.\n";
+
 constexpr char kLegend[] =
     "\nEnergy: as a multiple of the frame's own best map, geometric mean over the frames. "
     "Updates:\n"
@@ -27,13 +31,14 @@ std::string FigureOrDash(const std::optional<double>& value) {
   return value.has_value() ? FigureText(*value) : "-";
 }
 
-std::vector<std::string> Cells(const std::string& name, const ShotTotals& totals) {
+std::vector<std::string> Cells(const std::string& name, const ShotTotals& totals, bool of_plans) {
   std::vector<std::string> cells = {name, absl::StrCat(totals.num_frames)};
   if (totals.num_frames == 0) {
-    cells.push_back("no matrix, see below");
+    cells.push_back(of_plans ? "no plan, see below" : "no matrix, see below");
     return cells;
   }
   cells.push_back(absl::StrCat(totals.num_updates));
+  if (of_plans) cells.push_back(absl::StrCat(totals.num_moved, " / ", totals.num_maps));
   cells.push_back(FigureOrDash(totals.energy_ratio));
   cells.push_back(FigureOrDash(totals.phase_drift_texels));
   cells.push_back(FigureOrDash(totals.edge_crawl_px));
@@ -47,6 +52,7 @@ Table TotalsTable(const ShotContext& context) {
   table.AddColumn("", "light");
   table.AddColumn("", "frames");
   table.AddColumn("", "updates");
+  if (job.plans.has_value()) table.AddColumn("maps", "moved / all");
   table.AddColumn("energy", "/ per-frame");
   table.AddColumn("phase drift", "texels");
   table.AddColumn("edge crawl", "pixels");
@@ -55,8 +61,9 @@ Table TotalsTable(const ShotContext& context) {
     table.AddRow({name});
     for (const ShotMode mode : kShotModes) {
       if (!job.Has(mode)) continue;
-      table.AddRow(
-          Cells(absl::StrCat("  ", ShotModeName(mode)), TotalsOf(context.rows, mode, light)));
+      table.AddRow(Cells(absl::StrCat("  ", ShotModeName(mode)),
+                         TotalsOf(context.rows, mode, light),
+                         job.plans.has_value()));
     }
   };
   for (size_t i = 0; i < job.lights.size(); ++i) add(job.lights[i].name, i);
@@ -91,6 +98,24 @@ std::string TrackerText(const TrackerOptions& tracker) {
       FigureText(100.0 * tracker.replace_below),
       frames,
       FigureText(tracker.cover_margin_percent));
+}
+
+std::string TrackerText(const PlanTrackerOptions& tracker) {
+  const std::string frames = tracker.update_every_frames == 1
+                                 ? "every frame"
+                                 : absl::StrFormat("one frame of %d", tracker.update_every_frames);
+  return absl::StrFormat(
+      "Tracked: a plan is kept while its energy is at most %s %% more than that of the frame's "
+      "own, "
+      "looked\nat in %s; a new map has %s %% more room on every side\n",
+      FigureText(100.0 * tracker.tolerance),
+      frames,
+      FigureText(tracker.cover_margin_percent));
+}
+
+std::string TrackerText(const ShotJob& job) {
+  if (!job.Has(ShotMode::kTracked)) return "";
+  return job.plans.has_value() ? TrackerText(*job.plans) : TrackerText(job.tracker);
 }
 
 // "frame 0003", "2 of 24 frames, 0003 and 0007", "9 of 24 frames, 0003 ... 0019".
@@ -148,7 +173,7 @@ std::string GapText(const ShotContext& context, size_t light, const Gap& gap) {
   const std::string name = absl::StrCat("light \"", context.job.lights[light].name, "\"");
   const bool is_named = absl::StrContains(gap.first_error, name);
   return absl::StrCat(absl::StrJoin(gap.modes, ", "),
-                      ": no matrix in ",
+                      context.job.plans.has_value() ? ": no plan in " : ": no matrix in ",
                       FramesText(context.job, gap.frames),
                       ": ",
                       is_named ? "" : name + ": ",
@@ -159,17 +184,17 @@ std::string GapText(const ShotContext& context, size_t light, const Gap& gap) {
 
 std::string ShotReportText(const ShotContext& context) {
   const ShotJob& job = context.job;
-  return absl::StrCat(absl::StrFormat("%s: %d %s; map %d x %d texels\nFit: %s\n",
+  return absl::StrCat(absl::StrFormat("%s: %d %s; %s\nFit: %s\n",
                                       job.name,
                                       job.frames.size(),
                                       job.frames.size() == 1 ? "frame" : "frames",
-                                      job.map.width,
-                                      job.map.height,
+                                      MapsText(job),
                                       MethodText(job.fit())),
-                      job.Has(ShotMode::kTracked) ? TrackerText(job.tracker) : "",
+                      TrackerText(job),
                       "\n",
                       TotalsTable(context).Text(),
                       kLegend,
+                      job.plans.has_value() ? kPlanLegend : "",
                       WhereText(context));
 }
 

@@ -39,8 +39,7 @@ ShotContext::ShotContext(const ShotJob& job)
         done_[static_cast<size_t>(mode)][i] =
             HasKey(paths.Result(mode, frame), keys.Of(mode, i)) ? 1 : 0;
       }
-      has_summary_[i] = job.Has(ShotMode::kPerShot) &&
-                                HoldsText(paths.SummaryKey(frame), keys.summaries[i]) &&
+      has_summary_[i] = MakesSummaries() && HoldsText(paths.SummaryKey(frame), keys.summaries[i]) &&
                                 ReadSummaryFile(paths.Summary(frame)).ok()
                             ? 1
                             : 0;
@@ -59,7 +58,8 @@ bool ShotContext::NeedsFits(size_t frame) const {
 bool ShotContext::IsComplete(size_t frame) const {
   if (NeedsFits(frame)) return false;
   if (!job.Has(ShotMode::kPerShot)) return true;
-  return HasSummary(frame) && (!has_shot_ || IsDone(ShotMode::kPerShot, frame));
+  if (MakesSummaries() && !HasSummary(frame)) return false;
+  return !has_shot_ || IsDone(ShotMode::kPerShot, frame);
 }
 
 absl::StatusOr<v1::FitResult> ShotContext::ReadDone(ShotMode mode, size_t frame) const {

@@ -39,6 +39,9 @@ class ShotContext {
   bool HasSummary(size_t frame) const { return has_summary_[frame] != 0; }
   bool HasShot() const { return has_shot_; }
 
+  // Whether kPerShot sums the frames up in summaries: a plan of several maps needs more than these.
+  bool MakesSummaries() const { return job.Has(ShotMode::kPerShot) && !job.plans.has_value(); }
+
   // Whether all of the frame is there that can be while kPerShot has no matrices; whether a matrix
   // of its own, per frame or tracked, is missing.
   bool IsComplete(size_t frame) const;

@@ -11,7 +11,7 @@ namespace {
 constexpr char kNames[] =
     "mode,frame,number,light,status,action,energy,energy_ratio,footprint_rms_px,"
     "footprint_median_px,footprint_p99_px,foretold_wrong_share,phase_drift_texels,edge_crawl_px,"
-    "border,note\n";
+    "border,note,maps,maps_moved\n";
 
 std::string Line(const ShotJob& job, const ShotRows& rows, const ShotRow& row) {
   const ShotFrame& frame = job.frames[row.frame];
@@ -41,7 +41,9 @@ std::string Line(const ShotJob& job, const ShotRows& rows, const ShotRow& row) {
                                 CsvNumber(drift),
                                 CsvNumber(edge_crawl),
                                 ok ? BorderName(row.border) : "",
-                                CsvField(row.error)};
+                                CsvField(row.error),
+                                ok ? absl::StrCat(row.num_maps) : "",
+                                ok ? absl::StrCat(row.num_moved) : ""};
   return absl::StrJoin(fields, ",") + "\n";
 }
 

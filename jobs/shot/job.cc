@@ -1,6 +1,7 @@
 #include "jobs/shot/job.h"
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 
 namespace lightfit {
 
@@ -14,6 +15,19 @@ const char* ShotModeName(ShotMode mode) {
       return "per-shot";
   }
   return "?";
+}
+
+std::string MapsText(const ShotJob& job) {
+  if (!job.plans.has_value()) {
+    return absl::StrFormat("map %d x %d texels", job.map.width, job.map.height);
+  }
+  const PlanOptions& plan = job.plans->plan;
+  return absl::StrFormat(
+      "up to %d maps for each light, %s",
+      plan.max_maps,
+      plan.each.has_value()
+          ? absl::StrFormat("%d x %d texels each", plan.each->width, plan.each->height)
+          : absl::StrFormat("%d texels in all", plan.texels));
 }
 
 std::string ShotPaths::Result(ShotMode mode, const ShotFrame& frame) const {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "geometry/light.h"
 #include "jobs/shot/frames.h"
 #include "optimizer/tracking/tracker.h"
+#include "partition/tracking/plan_tracker.h"
 
 namespace lightfit {
 
@@ -39,6 +41,10 @@ struct ShotJob {
   TrackerOptions tracker;  // TrackerOptions::fit is for all modes
   const FitOptions& fit() const { return tracker.fit; }
 
+  // Where several maps for one light are wanted; of it PlanOptions::fit is `fit()`, and `map` does
+  // not count.
+  std::optional<PlanTrackerOptions> plans;
+
   // kPerShot, L1 metrics: times that the samples are weighed anew, in the shot's own map. >= 0.
   int rounds = 2;
 
@@ -47,6 +53,9 @@ struct ShotJob {
   int num_threads = 1;
   bool quiet = false;  // no progress bar
 };
+
+// "map 1024 x 1024 texels", "up to 4 maps for each light, 1048576 texels in all".
+std::string MapsText(const ShotJob& job);
 
 // Where results go. A name that ends in a number keeps frames in order.
 struct ShotPaths {

@@ -5,6 +5,9 @@
 #include "base/text_file.h"
 #include "optimizer/evaluate.h"
 #include "optimizer/fit.h"
+#include "partition/evaluate_plan.h"
+#include "partition/tracking/plan_crawl.h"
+#include "wire/plan_proto.h"
 
 namespace lightfit {
 namespace {
@@ -15,34 +18,50 @@ FitOptions AnyBorder(FitOptions options) {
   return options;
 }
 
+absl::StatusOr<Crawl> CrawlBetween(const ShotJob& job,
+                                   const LightView& view,
+                                   const ReadbackFile& file_before,
+                                   const Plan& before,
+                                   const Plan& now) {
+  if (job.plans.has_value()) {
+    return MeasurePlanCrawl({file_before.View(), before},
+                            {view.surfaces->readback, now, view.surfaces},
+                            *view.light,
+                            job.plans->plan.guard_texels,
+                            job.fit().samples);
+  }
+  return MeasureCrawl(
+      {file_before.View(), before.maps[0].map_from_world, job.map},
+      {view.surfaces->readback, now.maps[0].map_from_world, now.maps[0].size, view.surfaces},
+      *view.light,
+      job.fit().samples);
+}
+
 absl::StatusOr<ShotFit> JudgeFit(const ShotJob& job,
                                  const LightView& view,
-                                 const TrackedMatrix& tracked,
+                                 const ShotAnswer& answer,
                                  const ReadbackFile* file_before,
-                                 const std::optional<LightMap>& map_before) {
+                                 const std::optional<Plan>& before) {
   ShotFit fit;
-  fit.tracked = tracked;
-  LightMatrix& matrix = fit.tracked.matrix;
+  fit.answer = answer;
+  const Plan now = LookUpOf(answer);
   std::optional<LightView> other;  // where the border was chosen otherwise
-  if (matrix.border != view.border) {
-    absl::StatusOr<LightView> made =
-        ViewLight(*view.surfaces, *view.light, matrix.border, job.fit());
+  if (now.border != view.border) {
+    absl::StatusOr<LightView> made = ViewLight(*view.surfaces, *view.light, now.border, job.fit());
     if (!made.ok()) return made.status();
     other = *std::move(made);
   }
-  absl::StatusOr<Figures> figures = EvaluateMatrix(other.has_value() ? *other : view,
-                                                   matrix.map_from_world,
-                                                   matrix.map,
-                                                   AnyBorder(job.fit()),
-                                                   matrix.border);
+  const LightView& judged = other.has_value() ? *other : view;
+  const FitOptions options = AnyBorder(job.fit());
+  absl::StatusOr<Figures> figures =
+      job.plans.has_value()
+          ? EvaluatePlan(judged, now, options, job.plans->plan.guard_texels)
+          : EvaluateMatrix(
+                judged, now.maps[0].map_from_world, now.maps[0].size, options, now.border);
   if (!figures.ok()) return figures.status();
-  matrix.figures = *std::move(figures);
-  if (file_before == nullptr || !map_before.has_value()) return fit;
-  const absl::StatusOr<Crawl> crawl =
-      MeasureCrawl({file_before->View(), map_before->map_from_world, job.map},
-                   {view.surfaces->readback, matrix.map_from_world, matrix.map, view.surfaces},
-                   *view.light,
-                   job.fit().samples);
+  fit.figures = *std::move(figures);
+  if (file_before == nullptr || !before.has_value()) return fit;
+  const absl::StatusOr<Crawl> crawl = CrawlBetween(job, view, *file_before, *before, now);
   if (!crawl.ok()) return crawl.status();
   fit.crawl = *crawl;
   return fit;
@@ -73,58 +92,40 @@ FrameViews::FrameViews(const ShotJob& job, const absl::StatusOr<ReadbackFile>& f
   }
 }
 
-TrackedMatrices FitReadable(absl::Span<const Light> lights,
-                            const absl::StatusOr<ReadbackFile>& file,
-                            const std::function<TrackedMatrices(absl::Span<const Light>)>& fit) {
-  if (!file.ok()) return TrackedMatrices(lights.size(), file.status());
-  std::vector<Light> readable;
-  for (size_t i = 0; i < lights.size(); ++i) {
-    if (file->light_status[i].ok()) readable.push_back(lights[i]);
-  }
-  TrackedMatrices fits = fit(readable);
-  TrackedMatrices all;
-  size_t next = 0;
-  for (const absl::Status& status : file->light_status) {
-    if (status.ok()) {
-      all.push_back(std::move(fits[next++]));
-    } else {
-      all.emplace_back(status);
-    }
-  }
-  return all;
-}
-
-LightMaps MapsOf(absl::Span<const absl::StatusOr<TrackedMatrix>> matrices) {
-  LightMaps maps;
-  for (const absl::StatusOr<TrackedMatrix>& matrix : matrices) {
-    maps.emplace_back();
-    if (matrix.ok()) maps.back() = {matrix->matrix.map_from_world, matrix->matrix.border};
-  }
-  return maps;
-}
-
-LightMaps MapsOf(const ShotJob& job, const v1::FitResult& result) {
-  LightMaps maps(job.lights.size());
-  for (size_t i = 0; i < maps.size() && static_cast<int>(i) < result.lights_size(); ++i) {
+ShotLookUps LookUpsOf(const ShotJob& job, const v1::FitResult& result) {
+  ShotLookUps look_ups(job.lights.size());
+  for (size_t i = 0; i < look_ups.size() && static_cast<int>(i) < result.lights_size(); ++i) {
     const v1::LightResult& light = result.lights(static_cast<int>(i));
+    if (light.has_plan()) {
+      absl::StatusOr<Plan> plan = PlanFromProto(light.plan(), "plan");
+      if (!plan.ok()) continue;
+      plan->light_name = job.lights[i].name;
+      look_ups[i] = *std::move(plan);
+      continue;
+    }
     if (!light.has_map_from_world()) continue;
     const absl::StatusOr<Eigen::Matrix4d> map =
         MatrixFromProto(light.map_from_world(), "mapFromWorld");
     const absl::StatusOr<Border> border = BorderFromProto(light.border(), "border");
-    if (map.ok() && border.ok()) maps[i] = {*map, *border};
+    if (!map.ok() || !border.ok()) continue;
+    TrackedMatrix tracked;
+    tracked.matrix.light_name = job.lights[i].name;
+    tracked.matrix.map = job.map;
+    tracked.matrix.map_from_world = *map;
+    tracked.matrix.border = *border;
+    look_ups[i] = LookUpOf(tracked);
   }
-  return maps;
+  return look_ups;
 }
 
-std::vector<absl::StatusOr<ShotFit>> JudgeFits(
-    const ShotJob& job,
-    const FrameViews& views,
-    absl::Span<const absl::StatusOr<TrackedMatrix>> matrices,
-    const FrameBefore& before) {
+std::vector<absl::StatusOr<ShotFit>> JudgeFits(const ShotJob& job,
+                                               const FrameViews& views,
+                                               const ShotAnswers& answers,
+                                               const FrameBefore& before) {
   std::vector<absl::StatusOr<ShotFit>> fits;
-  for (size_t i = 0; i < matrices.size(); ++i) {
-    if (!matrices[i].ok()) {
-      fits.emplace_back(matrices[i].status());
+  for (size_t i = 0; i < answers.size(); ++i) {
+    if (!answers[i].ok()) {
+      fits.emplace_back(answers[i].status());
       continue;
     }
     if (!views[i].ok()) {
@@ -134,9 +135,9 @@ std::vector<absl::StatusOr<ShotFit>> JudgeFits(
     const bool has_before = before.file != nullptr && before.file->light_status[i].ok();
     fits.push_back(JudgeFit(job,
                             *views[i],
-                            *matrices[i],
+                            *answers[i],
                             has_before ? before.file : nullptr,
-                            has_before ? before.maps[i] : std::nullopt));
+                            has_before ? before.look_ups[i] : std::nullopt));
   }
   return fits;
 }

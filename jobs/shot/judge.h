@@ -1,27 +1,19 @@
 // jobs/shot/judge.h
 //
-// A frame of a shot in memory, and how good matrices are in it.
-// In:   the frame's file; per light a matrix, or why there is none; the frame before.
-// Out:  ShotFit: the matrices with their figures on this frame's samples, and their crawl.
+// A frame of a shot in memory, and how good matrices and plans are in it.
+// In:   the frame's file; per light a matrix or plan, or why there is none; the frame before.
+// Out:  ShotFit: these with their figures on this frame's samples, and their crawl.
 #pragma once
 
-#include <functional>
-#include <optional>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
+#include "jobs/shot/answer.h"
 #include "jobs/shot/result.h"
 #include "optimizer/light_view.h"
 
 namespace lightfit {
-
-// By light: its matrix, and what look-ups outside the map find.
-struct LightMap {
-  Eigen::Matrix4d map_from_world;
-  Border border = Border::kLit;
-};
-using LightMaps = std::vector<std::optional<LightMap>>;
 
 // Reads and checks the frame.
 absl::StatusOr<ReadbackFile> ReadFrame(const ShotFrame& frame, absl::Span<const Light> lights);
@@ -43,27 +35,19 @@ class FrameViews {
   std::vector<absl::StatusOr<LightView>> views_;
 };
 
-// Calls `fit` for the lights that the file has a shadow of. The others get their own status, and
-// all that of a file which could not be read.
-TrackedMatrices FitReadable(absl::Span<const Light> lights,
-                            const absl::StatusOr<ReadbackFile>& file,
-                            const std::function<TrackedMatrices(absl::Span<const Light>)>& fit);
-
-// The maps of those that have one; the same from a result of an earlier run.
-LightMaps MapsOf(absl::Span<const absl::StatusOr<TrackedMatrix>> matrices);
-LightMaps MapsOf(const ShotJob& job, const v1::FitResult& result);
+// What is looked up by a result of an earlier run.
+ShotLookUps LookUpsOf(const ShotJob& job, const v1::FitResult& result);
 
 struct FrameBefore {
   const ReadbackFile* file = nullptr;  // null: there is none
-  LightMaps maps;
+  ShotLookUps look_ups;
 };
 
-// Energies and footprints become those of EvaluateMatrix(), by one measure for all modes: over the
-// edges that a map with the matrix's border serves.
-std::vector<absl::StatusOr<ShotFit>> JudgeFits(
-    const ShotJob& job,
-    const FrameViews& views,
-    absl::Span<const absl::StatusOr<TrackedMatrix>> matrices,
-    const FrameBefore& before);
+// Energies and footprints become those of EvaluateMatrix() and EvaluatePlan(), by one measure for
+// all modes: over the edges that maps with the answer's border serve.
+std::vector<absl::StatusOr<ShotFit>> JudgeFits(const ShotJob& job,
+                                               const FrameViews& views,
+                                               const ShotAnswers& answers,
+                                               const FrameBefore& before);
 
 }  // namespace lightfit

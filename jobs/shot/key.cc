@@ -14,6 +14,8 @@
 #include "wire/light_proto.h"
 #include "wire/matrix_proto.h"
 #include "wire/options_proto.h"
+#include "wire/plan_proto.h"
+#include "wire/plan_shot_proto.h"
 #include "wire/proto_json.h"
 #include "wire/shot_proto.h"
 
@@ -87,6 +89,10 @@ std::string SummarySettings(const ShotJob& job) {
   return text;
 }
 
+std::string PlanText(const PlanTrackerOptions& plans) {
+  return JsonOrError(PlanOptionsToProto(plans.plan));
+}
+
 }  // namespace
 
 ShotKeys ComputeShotKeys(const ShotJob& job) {
@@ -101,8 +107,11 @@ ShotKeys ComputeShotKeys(const ShotJob& job) {
                                             "x",
                                             job.map.height,
                                             "\n",
-                                            JsonOrError(ClipConventionToProto(job.clip)));
-  const std::string tracker = JsonOrError(TrackerSettingsToProto(job.tracker));
+                                            JsonOrError(ClipConventionToProto(job.clip)),
+                                            job.plans.has_value() ? PlanText(*job.plans) : "");
+  const std::string tracker = job.plans.has_value()
+                                  ? JsonOrError(PlanTrackerSettingsToProto(*job.plans))
+                                  : JsonOrError(TrackerSettingsToProto(job.tracker));
   ShotKeys keys;
   std::string before = "none", tracked = "none", all;
   for (const std::string& frame : frame_keys) {

@@ -11,6 +11,7 @@
 #include "base/text_file.h"
 #include "base/version.h"
 #include "io/summary_file.h"
+#include "jobs/shot/frame_fitter.h"
 #include "jobs/shot/judge.h"
 #include "optimizer/fit.h"
 #include "wire/shot_proto.h"
@@ -25,9 +26,9 @@ struct FrameWork {
   std::optional<FrameViews> views;  // in the file
 
   struct Mode {
-    TrackedMatrices matrices;
-    LightMaps maps;  // of `matrices`, or of the result that is done
-    std::vector<TrackedState> states;
+    ShotAnswers answers;
+    ShotLookUps look_ups;  // of `answers`, or of the result that is done
+    ShotStates states;
   };
   Mode per_frame, tracked;
 
@@ -37,13 +38,13 @@ using Group = std::vector<std::shared_ptr<FrameWork>>;
 
 // Whether the frame's summary is to be made, or read for the sum.
 bool NeedsSummary(const ShotContext& context, size_t frame) {
-  return context.job.Has(ShotMode::kPerShot) && (!context.HasShot() || !context.HasSummary(frame));
+  return context.MakesSummaries() && (!context.HasShot() || !context.HasSummary(frame));
 }
 
 class FramePipeline {
  public:
   explicit FramePipeline(ShotContext* context)
-      : context_(*context), job_(context->job), tracker_(context->job.tracker) {}
+      : context_(*context), job_(context->job), tracker_(context->job) {}
 
   absl::StatusOr<SummarySet> Run() {
     Group prepared, tracked;
@@ -99,29 +100,10 @@ class FramePipeline {
       work->views.emplace(job_, work->file);
     }
     if (IsMissing(ShotMode::kPerFrame, frame)) {
-      work->per_frame.matrices = FitAll(*work->views);
-      work->per_frame.maps = MapsOf(work->per_frame.matrices);
+      work->per_frame.answers = FitFrame(job_, *work->views);
+      work->per_frame.look_ups = LookUpsOf(work->per_frame.answers);
     }
     if (NeedsSummary(context_, frame)) Summarise(*work);
-  }
-
-  TrackedMatrices FitAll(const FrameViews& views) const {
-    TrackedMatrices fits;
-    for (size_t i = 0; i < job_.lights.size(); ++i) {
-      absl::StatusOr<LightMatrix> matrix =
-          views[i].ok() ? absl::UnknownError("not fitted") : views[i].status();
-      if (views[i].ok()) {
-        matrix = job_.fit().border == BorderChoice::kAutomatic
-                     ? FitLight(*views.surfaces(), job_.lights[i], job_.map, job_.fit())
-                     : FitLight(*views[i], job_.map, job_.fit());
-      }
-      if (matrix.ok()) {
-        fits.emplace_back(TrackedMatrix{*std::move(matrix), TrackerAction::kReplaced, 0});
-      } else {
-        fits.emplace_back(matrix.status());
-      }
-    }
-    return fits;
   }
 
   void LoadDone(ShotMode mode, size_t frame, FrameWork::Mode* part) {
@@ -130,9 +112,8 @@ class FramePipeline {
       context_.Fail(result.status());
       return;
     }
-    part->maps = MapsOf(job_, *result);
-    absl::StatusOr<std::vector<TrackedState>> states =
-        TrackedStatesFromProto(result->shot(), job_.lights, job_.map);
+    part->look_ups = LookUpsOf(job_, *result);
+    absl::StatusOr<ShotStates> states = StatesOf(job_, *result);
     context_.Fail(InFile(context_.paths.Result(mode, job_.frames[frame]), states.status()));
     if (states.ok()) part->states = *std::move(states);
     context_.KeepRows(mode, frame, *result);
@@ -177,16 +158,12 @@ class FramePipeline {
     if (!job_.Has(ShotMode::kTracked)) return;
     FrameWork::Mode& tracked = work->tracked;
     if (context_.IsDone(ShotMode::kTracked, work->frame)) {
-      tracker_.set_state(tracked.states);
+      tracker_.set_states(tracked.states);
       return;
     }
-    tracked.matrices = FitReadable(job_.lights, work->file, [&](absl::Span<const Light> lights) {
-      const absl::StatusOr<Surfaces>& surfaces = work->views->surfaces();
-      return surfaces.ok() ? tracker_.Update(*surfaces, lights, job_.map)
-                           : TrackedMatrices(lights.size(), surfaces.status());
-    });
-    tracked.maps = MapsOf(tracked.matrices);
-    tracked.states = tracker_.state();
+    tracked.answers = tracker_.Track(work->file, *work->views);
+    tracked.look_ups = LookUpsOf(tracked.answers);
+    tracked.states = tracker_.states();
   }
 
   void Finish(FrameWork* work) {
@@ -202,11 +179,11 @@ class FramePipeline {
     FrameBefore before;
     if (work->before != nullptr && work->before->file.ok()) {
       before.file = &*work->before->file;
-      before.maps = (work->before.get()->*part).maps;
+      before.look_ups = (work->before.get()->*part).look_ups;
     }
     const FrameWork::Mode& own = work->*part;
     const std::vector<absl::StatusOr<ShotFit>> fits =
-        JudgeFits(job_, *work->views, own.matrices, before);
+        JudgeFits(job_, *work->views, own.answers, before);
     context_.WriteResult(mode,
                          work->frame,
                          ShotResultToProto(job_,
@@ -220,7 +197,7 @@ class FramePipeline {
 
   ShotContext& context_;
   const ShotJob& job_;
-  Tracker tracker_;
+  ShotTracker tracker_;
   size_t next_ = 0;
   std::shared_ptr<FrameWork> last_;  // of the frames that were begun
   std::mutex sum_mutex_;

@@ -2,7 +2,7 @@
 //
 // What came of one frame in one mode: as the JSON file that is kept, and as rows for table, CSV and
 // plot.
-// In:   per light a matrix with its figures on this frame, or why there is none.
+// In:   per light a matrix or plan with its figures on this frame, or why there is none.
 // Out:  v1::FitResult; from it, fresh or read back, ShotRow.
 #pragma once
 
@@ -14,6 +14,7 @@
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
 #include "io/readback_exr.h"
+#include "jobs/shot/answer.h"
 #include "jobs/shot/job.h"
 #include "optimizer/figures/stability.h"
 #include "optimizer/tracking/tracker.h"
@@ -22,27 +23,33 @@
 namespace lightfit {
 
 struct ShotFit {
-  TrackedMatrix tracked;       // with foretold wrong pixels among its figures
-  std::optional<Crawl> crawl;  // against the frame before, where both have a matrix
+  ShotAnswer answer;
+  Figures figures;             // on this frame's samples, foretold wrong pixels among them
+  std::optional<Crawl> crawl;  // against the frame before, where both have an answer
 };
 
 // `fits[l]` belongs to job.lights[l]; `readback` is null when the frame could not be read, and then
-// the key is left out, so that another run tries again. `states`: kTracked only.
+// the key is left out, so that another run tries again. `states`: kTracked only; else none.
 v1::FitResult ShotResultToProto(const ShotJob& job,
                                 ShotMode mode,
                                 size_t frame,
                                 const std::string& key,
                                 const ReadbackFile* readback,
                                 absl::Span<const absl::StatusOr<ShotFit>> fits,
-                                absl::Span<const TrackedState> states);
+                                const ShotStates& states);
+
+// What trackers remembered after a frame, of the lights that are the job's still. InvalidArgument
+// when a number is none.
+absl::StatusOr<ShotStates> StatesOf(const ShotJob& job, const v1::FitResult& result);
 
 // One light in one frame in one mode.
 struct ShotRow {
   ShotMode mode = ShotMode::kPerFrame;
   size_t frame = 0, light = 0;  // in ShotJob
-  std::string error;            // why there is no matrix; empty: there is
+  std::string error;            // why there is no answer; empty: there is
   std::string action;           // kTracked: TrackerActionName(), else empty
-  bool moved = true;            // whether texels moved over surfaces in this frame
+  int num_maps = 1;
+  int num_moved = 1;  // maps whose texels moved over surfaces in this frame
 
   Border border = Border::kLit;  // of the map's sampler
 

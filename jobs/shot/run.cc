@@ -44,7 +44,9 @@ absl::Status MakeShotFolders(const ShotJob& job) {
   for (const ShotMode mode : kShotModes) {
     if (job.Has(mode)) folders.push_back(absl::StrCat(job.folder, "/", ShotModeName(mode)));
   }
-  if (job.Has(ShotMode::kPerShot)) folders.push_back(job.folder + "/summaries");
+  if (job.Has(ShotMode::kPerShot) && !job.plans.has_value()) {
+    folders.push_back(job.folder + "/summaries");
+  }
   for (const std::string& folder : folders) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
@@ -67,7 +69,7 @@ absl::Status RunShot(ShotContext* context) {
   context->BeginProgress(NumFrameSteps(*context) + (has_whole ? NumWholeShotSteps(*context) : 0));
   const absl::StatusOr<SummarySet> sum = FitFrames(context);
   if (sum.ok() && has_whole) {
-    if (!context->HasShot()) NoteMissing(*sum, context);
+    if (context->MakesSummaries() && !context->HasShot()) NoteMissing(*sum, context);
     context->Fail(FitWholeShot(*sum, context));
   }
   context->Fail(sum.status());

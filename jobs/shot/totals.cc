@@ -44,7 +44,9 @@ ShotTotals TotalsOf(const ShotRows& rows, ShotMode mode, std::optional<size_t> l
         continue;
       }
       ++totals.num_frames;
-      totals.num_updates += row.moved ? 1 : 0;
+      totals.num_updates += row.num_moved > 0 ? 1 : 0;
+      totals.num_maps += row.num_maps;
+      totals.num_moved += row.num_moved;
       wrong.Add(row.wrong_share);
       if (const std::optional<double> ratio = EnergyRatio(rows, row)) {
         log_ratio.Add(std::log(*ratio));

@@ -19,6 +19,8 @@ struct ShotTotals {
   int num_frames = 0;   // that have a matrix
   int num_failed = 0;   // that have none
   int num_updates = 0;  // in which texels moved over surfaces, the first frame among them
+  int num_maps = 0;     // of all frames together
+  int num_moved = 0;    // of these, whose texels moved
 
   // Over the frames that have it; absent where none has.
   std::optional<double> energy_ratio;        // geometric mean of EnergyRatio()

@@ -9,6 +9,7 @@
 #include "absl/strings/str_format.h"
 #include "base/parallel.h"
 #include "jobs/shot/judge.h"
+#include "jobs/shot/whole_plans.h"
 #include "optimizer/energy/reweighting.h"
 #include "optimizer/energy/summary_total.h"
 #include "optimizer/fit.h"
@@ -104,20 +105,14 @@ ShotMatrices Reweighted(ShotMatrices matrices, ShotContext* context) {
   return result;
 }
 
-v1::FitResult ShotToProto(const ShotContext& context, const ShotMatrices& matrices) {
+v1::FitResult ShotToProto(const ShotContext& context, FitReport report) {
   const ShotJob& job = context.job;
-  FitReport report;
   report.source = job.name;
   report.options = job.fit();
   report.options.compute_statistics = false;  // a sum has the RMS alone
+  if (job.plans.has_value()) report.plan_options = job.plans->plan;
   report.map = job.map;
   report.clip = job.clip;
-  for (size_t i = 0; i < matrices.size(); ++i) {
-    LightFit fit;
-    fit.light = job.lights[i];
-    fit.matrix = matrices[i];
-    report.lights.push_back(std::move(fit));
-  }
   v1::FitResult result = FitResultToProto(report);
   result.mutable_readback()->clear_camera();
   result.mutable_shot()->set_mode(v1::SHOT_MODE_PER_SHOT);
@@ -126,26 +121,72 @@ v1::FitResult ShotToProto(const ShotContext& context, const ShotMatrices& matric
   return result;
 }
 
+FitReport ReportOf(const ShotJob& job, const ShotMatrices& matrices) {
+  FitReport report;
+  for (size_t i = 0; i < matrices.size(); ++i) {
+    LightFit fit;
+    fit.light = job.lights[i];
+    fit.matrix = matrices[i];
+    report.lights.push_back(std::move(fit));
+  }
+  return report;
+}
+
+// Energies are the sums of those of the frames that have been judged.
+FitReport ReportOf(const ShotContext& context, const ShotAnswers& plans) {
+  const ShotJob& job = context.job;
+  FitReport report;
+  for (size_t i = 0; i < plans.size(); ++i) {
+    LightFit fit;
+    fit.light = job.lights[i];
+    if (plans[i].ok()) {
+      const LightPlan& plan = std::get<TrackedPlan>(*plans[i]).plan;
+      fit.plan = PlanFit{plan, {}, job.plans->plan.guard_texels};
+      for (const auto& rows : context.rows[static_cast<size_t>(ShotMode::kPerShot)]) {
+        if (i < rows.size() && rows[i].error.empty()) fit.plan->figures.energy += rows[i].energy;
+      }
+      fit.matrix = plan.maps[0];
+    } else {
+      fit.matrix = plans[i].status();
+    }
+    report.lights.push_back(std::move(fit));
+  }
+  return report;
+}
+
 // As the frames of the shot see them: nothing was searched there.
-TrackedMatrices MatricesOf(const ShotJob& job, const v1::FitResult& shot) {
-  const LightMaps maps = MapsOf(job, shot);
-  TrackedMatrices matrices;
-  for (size_t i = 0; i < maps.size(); ++i) {
-    if (!maps[i].has_value()) {
+ShotAnswers AnswersOf(const ShotJob& job, const v1::FitResult& shot) {
+  const ShotLookUps look_ups = LookUpsOf(job, shot);
+  ShotAnswers answers;
+  for (size_t i = 0; i < look_ups.size(); ++i) {
+    if (!look_ups[i].has_value()) {
       const v1::Status& status = shot.lights(static_cast<int>(i)).status();
-      matrices.emplace_back(
+      answers.emplace_back(
           absl::Status(static_cast<absl::StatusCode>(status.code()), status.message()));
       continue;
     }
-    TrackedMatrix tracked;
-    tracked.matrix.light_name = job.lights[i].name;
-    tracked.matrix.map = job.map;
-    tracked.matrix.map_from_world = maps[i]->map_from_world;
-    tracked.matrix.border = maps[i]->border;
-    tracked.matrix.search.stop_reason = StopReason::kNoSearch;
-    matrices.push_back(std::move(tracked));
+    ScratchVector<LightMatrix> maps;
+    for (const PlanMap& map : look_ups[i]->maps) {
+      LightMatrix& matrix = maps.emplace_back();
+      matrix.light_name = job.lights[i].name;
+      matrix.map = map.size;
+      matrix.map_from_world = map.map_from_world;
+      matrix.border = look_ups[i]->border;
+      matrix.search.stop_reason = StopReason::kNoSearch;
+    }
+    if (job.plans.has_value()) {
+      TrackedPlan tracked;
+      tracked.plan.light_name = job.lights[i].name;
+      tracked.plan.border = look_ups[i]->border;
+      tracked.plan.maps = std::move(maps);
+      answers.emplace_back(std::move(tracked));
+    } else {
+      TrackedMatrix tracked;
+      tracked.matrix = std::move(maps[0]);
+      answers.emplace_back(std::move(tracked));
+    }
   }
-  return matrices;
+  return answers;
 }
 
 absl::StatusOr<v1::FitResult> ReadOrFit(const SummarySet& sum, ShotContext* context) {
@@ -153,13 +194,23 @@ absl::StatusOr<v1::FitResult> ReadOrFit(const SummarySet& sum, ShotContext* cont
   if (context->HasShot()) return ReadFitResultJson(path);
   ShotMatrices matrices = FitSum(sum, context->job);
   if (IsL1(context->job.fit().metric)) matrices = Reweighted(std::move(matrices), context);
-  v1::FitResult result = ShotToProto(*context, matrices);
+  v1::FitResult result = ShotToProto(*context, ReportOf(context->job, matrices));
   context->Fail(WriteFitResultJson(path, result));
   return result;
 }
 
-// The shot's matrices in some consecutive frames.
-void JudgeFrames(const TrackedMatrices& matrices, int begin, int end, ShotContext* context) {
+// What the file has no shadow of has that for its answer.
+ShotAnswers ReadableOf(const ShotAnswers& answers, const absl::StatusOr<ReadbackFile>& file) {
+  ShotAnswers readable;
+  for (size_t light = 0; light < answers.size(); ++light) {
+    const absl::Status status = file.ok() ? file->light_status[light] : file.status();
+    readable.push_back(status.ok() ? answers[light] : status);
+  }
+  return readable;
+}
+
+// The shot's answers in some consecutive frames.
+void JudgeFrames(const ShotAnswers& answers, int begin, int end, ShotContext* context) {
   const ShotJob& job = context->job;
   absl::StatusOr<ReadbackFile> before = absl::UnknownError("not read");
   int last_read = -1;
@@ -174,20 +225,14 @@ void JudgeFrames(const TrackedMatrices& matrices, int begin, int end, ShotContex
     absl::StatusOr<ReadbackFile> file = ReadFrame(job.frames[i], job.lights);
     context->frame_status[i] = file.status();
     const FrameViews views(job, file);
-    const TrackedMatrices readable = FitReadable(job.lights, file, [&](absl::Span<const Light>) {
-      TrackedMatrices some;
-      for (size_t light = 0; light < job.lights.size(); ++light) {
-        if (file->light_status[light].ok()) some.push_back(matrices[light]);
-      }
-      return some;
-    });
+    const ShotAnswers readable = ReadableOf(answers, file);
     FrameBefore frame_before;
-    if (i > 0 && before.ok()) frame_before = {&*before, MapsOf(matrices)};
+    if (i > 0 && before.ok()) frame_before = {&*before, LookUpsOf(answers)};
     std::vector<absl::StatusOr<ShotFit>> fits = JudgeFits(job, views, readable, frame_before);
     for (absl::StatusOr<ShotFit>& fit : fits) {
       if (!fit.ok()) continue;
-      LightMatrix& matrix = fit->tracked.matrix;
-      matrix.search.energy_start = matrix.figures.energy;
+      auto* tracked = std::get_if<TrackedMatrix>(&fit->answer);
+      if (tracked != nullptr) tracked->matrix.search.energy_start = fit->figures.energy;
     }
     context->WriteResult(ShotMode::kPerShot,
                          i,
@@ -207,13 +252,22 @@ void JudgeFrames(const TrackedMatrices& matrices, int begin, int end, ShotContex
 }  // namespace
 
 absl::Status FitWholeShot(const SummarySet& sum, ShotContext* context) {
-  const absl::StatusOr<v1::FitResult> shot = ReadOrFit(sum, context);
+  const ShotJob& job = context->job;
+  const bool fits_plans = job.plans.has_value() && !context->HasShot();
+  ShotAnswers plans;
+  if (fits_plans) plans = FitShotPlans(context);
+  const absl::StatusOr<v1::FitResult> shot =
+      fits_plans ? ShotToProto(*context, ReportOf(*context, plans)) : ReadOrFit(sum, context);
   if (!shot.ok()) return shot.status();
-  const TrackedMatrices matrices = MatricesOf(context->job, *shot);
-  ParallelFor(static_cast<int>(context->job.frames.size()),
-              kFramesAtOnce,
-              context->job.num_threads,
-              [&](int begin, int end) { JudgeFrames(matrices, begin, end, context); });
+  const ShotAnswers answers = AnswersOf(job, *shot);
+  ParallelFor(
+      static_cast<int>(job.frames.size()), kFramesAtOnce, job.num_threads, [&](int begin, int end) {
+        JudgeFrames(answers, begin, end, context);
+      });
+  if (fits_plans) {
+    context->Fail(WriteFitResultJson(context->paths.Shot(),
+                                     ShotToProto(*context, ReportOf(*context, plans))));
+  }
   return context->status();
 }
 
@@ -223,7 +277,9 @@ int NumWholeShotSteps(const ShotContext& context) {
   for (size_t i = 0; i < job.frames.size(); ++i) {
     num_steps += context.IsDone(ShotMode::kPerShot, i) ? 0 : 1;
   }
-  if (!context.HasShot() && IsL1(job.fit().metric)) {
+  if (!context.HasShot() && job.plans.has_value()) {
+    num_steps += static_cast<int>(job.frames.size());
+  } else if (!context.HasShot() && IsL1(job.fit().metric)) {
     num_steps += (job.rounds + 1) * static_cast<int>(job.frames.size());
   }
   return num_steps;

@@ -9,7 +9,7 @@
 
 #include "calls/track_session.h"
 #include "optimizer/fit.h"
-#include "partition/plan_tracker.h"
+#include "partition/tracking/plan_tracker.h"
 #include "tests/calls/requests.h"
 #include "tests/io/summary_examples.h"
 #include "tests/testing/plane_readback.h"

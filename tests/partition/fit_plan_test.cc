@@ -14,7 +14,7 @@
 #include "optimizer/fit.h"
 #include "optimizer/readback/needed_surfaces.h"
 #include "partition/evaluate_plan.h"
-#include "tests/partition/plan_walk.h"
+#include "tests/partition/tracking/plan_walk.h"
 #include "tests/testing/matchers.h"
 #include "tests/testing/test_scene.h"
 

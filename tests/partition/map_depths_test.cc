@@ -8,10 +8,10 @@
 
 #include "optimizer/readback/needed_surfaces.h"
 #include "partition/fit_plan.h"
-#include "partition/kept_map.h"
 #include "partition/pixel_rays.h"
+#include "partition/tracking/kept_map.h"
 #include "tests/partition/plan_case.h"
-#include "tests/partition/plan_walk.h"
+#include "tests/partition/tracking/plan_walk.h"
 #include "tests/testing/matchers.h"
 
 namespace lightfit {

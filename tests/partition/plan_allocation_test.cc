@@ -5,8 +5,8 @@
 
 #include "base/scratch.h"
 #include "partition/fit_plan.h"
-#include "partition/plan_tracker.h"
-#include "tests/partition/plan_walk.h"
+#include "partition/tracking/plan_tracker.h"
+#include "tests/partition/tracking/plan_walk.h"
 #include "tests/testing/allocation_counter.h"
 #include "tests/testing/test_scene.h"
 

@@ -40,7 +40,7 @@ class ThreeFrames : public ::testing::Test {
       row.mode = ShotMode::kTracked;
       row.error.clear();
       row.action = i == 1 ? "kept" : "replaced";
-      row.moved = i != 1;
+      row.num_moved = i != 1 ? 1 : 0;
       row.energy = i == 0 ? 8.0 : i == 1 ? 2.0 : 12.0;
       if (i == 1) row.crawl = Crawl{100, 0.0, 0.0, 0, 0.0};
       rows_[1].push_back({row});
@@ -74,10 +74,10 @@ TEST_F(ThreeFrames, CsvLeavesOutWhatIsNotThere) {
   const std::vector<std::string> lines = absl::StrSplit(ShotCsv(job_, rows_), '\n');
   ASSERT_EQ(lines.size(), 8u);  // names, six rows, the end
   EXPECT_THAT(lines[0], StartsWith("mode,frame,number,light,"));
-  EXPECT_EQ(lines[1], "per-frame,walk,10,\"sun, \"\"low\"\"\",ok,,4,1,1.5,1,3,0.001,,,lit,");
+  EXPECT_EQ(lines[1], "per-frame,walk,10,\"sun, \"\"low\"\"\",ok,,4,1,1.5,1,3,0.001,,,lit,,1,1");
   EXPECT_EQ(lines[2],
-            "per-frame,walk,11,\"sun, \"\"low\"\"\",failed,,,,,,,,0.4,0.2,,\"no edge, none\"");
-  EXPECT_EQ(lines[5], "tracked,walk,11,\"sun, \"\"low\"\"\",ok,kept,2,,1.5,1,3,0.002,0,,lit,");
+            "per-frame,walk,11,\"sun, \"\"low\"\"\",failed,,,,,,,,0.4,0.2,,\"no edge, none\",,");
+  EXPECT_EQ(lines[5], "tracked,walk,11,\"sun, \"\"low\"\"\",ok,kept,2,,1.5,1,3,0.002,0,,lit,,1,0");
 }
 
 TEST_F(ThreeFrames, PlotHasTheColoursOfItsModes) {

@@ -1,4 +1,4 @@
-// partition/track_plan.h
+// partition/tracking/track_plan.h
 //
 // One frame of a tracked plan: what becomes of the maps of the frame before.
 // In:   a read-back's Surfaces, what is remembered of the light, options.
@@ -7,7 +7,7 @@
 
 #include "absl/status/statusor.h"
 #include "optimizer/readback/surfaces.h"
-#include "partition/plan_tracker.h"
+#include "partition/tracking/plan_tracker.h"
 
 namespace lightfit {
 

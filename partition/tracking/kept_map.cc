@@ -1,10 +1,10 @@
-#include "partition/kept_map.h"
+#include "partition/tracking/kept_map.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include "geometry/homography.h"
-#include "partition/held_bins.h"
+#include "partition/tracking/held_bins.h"
 
 namespace lightfit {
 

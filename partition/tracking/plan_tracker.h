@@ -1,4 +1,4 @@
-// partition/plan_tracker.h
+// partition/tracking/plan_tracker.h
 //
 // A light's plan from frame to frame: each map is kept, moved or replaced by itself.
 // In:   per frame a read-back's Surfaces.

@@ -1,4 +1,4 @@
-// partition/lay_plan.h
+// partition/tracking/lay_plan.h
 //
 // From maps that were kept, moved or fitted anew to the plan of this frame.
 // In:   the LightView, the maps, what each of them holds.
@@ -12,8 +12,8 @@
 #include "optimizer/fit_options.h"
 #include "optimizer/light_view.h"
 #include "partition/fit_plan.h"
-#include "partition/held_bins.h"
-#include "partition/kept_map.h"
+#include "partition/tracking/held_bins.h"
+#include "partition/tracking/kept_map.h"
 
 namespace lightfit {
 

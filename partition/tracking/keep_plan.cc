@@ -1,4 +1,4 @@
-#include "partition/keep_plan.h"
+#include "partition/tracking/keep_plan.h"
 
 #include <Eigen/LU>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "partition/held_bins.h"
+#include "partition/tracking/held_bins.h"
 
 #include <algorithm>
 #include <bit>
@@ -118,7 +118,7 @@ class Divider {
     for (const Eigen::Vector3d& ray : part.rays) added.middle += ray.normalized();
     added.middle.normalize();
     added.hull = ExtremeRays(part.rays, added.middle);
-    added.nearest = bin.nearest;
+    added.distance = bin.distance;
     added.num_covered = static_cast<int>(part.pixels.size());
     added.samples_begin = static_cast<int>(to.samples.size());
     for (const int i : part.samples) to.samples.push_back(rays_.samples[i]);

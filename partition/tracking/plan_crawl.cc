@@ -1,4 +1,4 @@
-#include "partition/plan_crawl.h"
+#include "partition/tracking/plan_crawl.h"
 
 #include <Eigen/Core>
 #include <optional>

@@ -1,4 +1,4 @@
-// partition/held_bins.h
+// partition/tracking/held_bins.h
 //
 // Which of the maps that are there hold what is to be covered.
 // In:   ServedRays, the rays of its pixels; maps of the same rays.

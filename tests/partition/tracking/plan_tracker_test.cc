@@ -1,4 +1,4 @@
-#include "partition/plan_tracker.h"
+#include "partition/tracking/plan_tracker.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,8 +17,8 @@
 #include "base/stop.h"
 #include "optimizer/readback/needed_surfaces.h"
 #include "optimizer/tracking/tracker.h"
-#include "partition/kept_map.h"
-#include "tests/partition/plan_walk.h"
+#include "partition/tracking/kept_map.h"
+#include "tests/partition/tracking/plan_walk.h"
 #include "tests/testing/matchers.h"
 
 namespace lightfit {

@@ -1,4 +1,4 @@
-// partition/plan_crawl.h
+// partition/tracking/plan_crawl.h
 //
 // How much what is looked up in a light's plan crawls from one frame to the next.
 // In:   two consecutive read-backs and the light's plan in each.

@@ -1,4 +1,4 @@
-// partition/kept_map.h
+// partition/tracking/kept_map.h
 //
 // One map of a plan as the frame before left it, seen in this frame.
 // In:   its matrix and size; the frame's LightView.

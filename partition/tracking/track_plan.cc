@@ -1,4 +1,4 @@
-#include "partition/track_plan.h"
+#include "partition/tracking/track_plan.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -9,8 +9,8 @@
 #include "optimizer/choose_fit.h"
 #include "optimizer/figures/foretell.h"
 #include "optimizer/light_view.h"
-#include "partition/keep_plan.h"
-#include "partition/lay_plan.h"
+#include "partition/tracking/keep_plan.h"
+#include "partition/tracking/lay_plan.h"
 
 namespace lightfit {
 

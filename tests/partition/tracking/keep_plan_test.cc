@@ -1,4 +1,4 @@
-#include "partition/keep_plan.h"
+#include "partition/tracking/keep_plan.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 #include "optimizer/energy/footprint.h"
 #include "partition/fit_plan.h"
 #include "tests/partition/plan_case.h"
-#include "tests/partition/plan_walk.h"
+#include "tests/partition/tracking/plan_walk.h"
 #include "tests/testing/matchers.h"
 #include "tests/testing/random_cases.h"
 

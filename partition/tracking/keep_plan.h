@@ -1,4 +1,4 @@
-// partition/keep_plan.h
+// partition/tracking/keep_plan.h
 //
 // What can be kept of the plan of the frame before, map by map.
 // In:   the maps as they were; one frame's LightView and ServedRays.
@@ -6,7 +6,8 @@
 // fitted
 //       anew.   docs/mathematics.md 11
 //
-// Of all ways to hold what must be held the one is taken that costs least (partition/plan_costs.h).
+// Of all ways to hold what must be held the one is taken that costs least
+// (partition/tracking/plan_costs.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -16,12 +17,12 @@
 #include "geometry/map_size.h"
 #include "optimizer/fit_options.h"
 #include "optimizer/light_view.h"
-#include "partition/held_bins.h"
-#include "partition/kept_map.h"
 #include "partition/pixel_rays.h"
-#include "partition/plan_costs.h"
 #include "partition/plan_options.h"
 #include "partition/served_rays.h"
+#include "partition/tracking/held_bins.h"
+#include "partition/tracking/kept_map.h"
+#include "partition/tracking/plan_costs.h"
 
 namespace lightfit {
 

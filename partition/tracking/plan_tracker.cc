@@ -1,10 +1,10 @@
-#include "partition/plan_tracker.h"
+#include "partition/tracking/plan_tracker.h"
 
 #include <algorithm>
 
 #include "absl/strings/str_format.h"
-#include "partition/kept_map.h"
-#include "partition/track_plan.h"
+#include "partition/tracking/kept_map.h"
+#include "partition/tracking/track_plan.h"
 
 namespace lightfit {
 

@@ -1,4 +1,4 @@
-// tests/partition/plan_walk.h
+// tests/partition/tracking/plan_walk.h
 //
 // A camera that walks through a random box scene, for tests of plans over frames.
 #pragma once

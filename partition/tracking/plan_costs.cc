@@ -1,4 +1,4 @@
-#include "partition/plan_costs.h"
+#include "partition/tracking/plan_costs.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "partition/held_bins.h"
+#include "partition/tracking/held_bins.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "partition/fit_plan.h"
-#include "partition/kept_map.h"
+#include "partition/tracking/kept_map.h"
 #include "tests/partition/plan_case.h"
 #include "tests/testing/matchers.h"
 #include "tests/testing/random_cases.h"

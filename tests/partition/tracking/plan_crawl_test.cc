@@ -1,4 +1,4 @@
-#include "partition/plan_crawl.h"
+#include "partition/tracking/plan_crawl.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "partition/lay_plan.h"
+#include "partition/tracking/lay_plan.h"
 
 #include <Eigen/LU>
 #include <algorithm>

@@ -1,4 +1,4 @@
-// partition/plan_costs.h
+// partition/tracking/plan_costs.h
 //
 // What maps cost in one frame: their energy, and what of it is redrawn.
 // In:   the frame's LightView and ServedRays, the maps of the frame before; maps.
@@ -14,8 +14,8 @@
 #include "optimizer/fit_options.h"
 #include "optimizer/light_view.h"
 #include "partition/cell_fit.h"
-#include "partition/kept_map.h"
 #include "partition/served_rays.h"
+#include "partition/tracking/kept_map.h"
 
 namespace lightfit {
 

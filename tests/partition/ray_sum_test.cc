@@ -1,0 +1,187 @@
+#include "partition/ray_sum.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cstdio>
+
+#include "optimizer/readback/needed_surfaces.h"
+#include "partition/evaluate_plan.h"
+#include "tests/partition/plan_case.h"
+#include "tests/partition/tracking/plan_walk.h"
+#include "tests/testing/matchers.h"
+
+namespace lightfit {
+namespace {
+
+using testing::ForEachReceiver;
+using testing::HasShadows;
+using ::testing::HasSubstr;
+using testing::IsOk;
+using testing::PlanCase;
+using testing::PlanWalk;
+using testing::StatusIs;
+
+constexpr int kAllSamples = 1 << 20;
+constexpr int kNumFrames = 4;
+constexpr double kStep = 0.4;  // metres a frame
+
+PlanOptions OptionsOf(int max_maps) {
+  PlanOptions options;
+  options.max_maps = max_maps;
+  options.texels = 200 * 200;
+  options.choose_by_forecast = false;
+  return options;
+}
+
+// Of a light in all frames of a walk; no frames where nothing of it is seen.
+RaySum SumOfWalk(const PlanWalk& walk,
+                 const Light& light,
+                 const FitOptions& fit,
+                 int most_samples) {
+  RaySum sum;
+  for (const Surfaces& surfaces : walk.frames) {
+    const auto view = ViewLight(surfaces, light, Border::kLit, fit);
+    EXPECT_THAT(view, IsOk());
+    const auto rays = FindServedRays(*view, fit);
+    EXPECT_THAT(rays, IsOk());
+    const RaySum own = SumOfRays(*rays, *view, most_samples);
+    if (sum.num_frames == 0) {
+      sum = own;
+    } else {
+      EXPECT_THAT(AddToSum(own, &sum), IsOk());
+    }
+  }
+  return sum;
+}
+
+TEST(RaySum, OfOneReadbackHasItsPlan) {
+  // Bins are others, so cuts may be too.
+  constexpr double kMostWorse = 1.25;
+  int num_cases = 0;
+  for (uint64_t seed = 1; seed <= 4; ++seed) {
+    for (int index = 0; index < 3; ++index) {
+      const PlanCase at(seed, index);
+      if (!HasShadows(at)) continue;
+      const PlanOptions options = OptionsOf(4);
+      const auto own = FitPlan(at.surfaces, at.light, options);
+      const auto of_sum = FitRaySum(SumOfRays(at.rays, at.view, kAllSamples), options);
+      ASSERT_EQ(own.ok(), of_sum.ok()) << own.status() << of_sum.status();
+      if (!own.ok()) continue;
+      EXPECT_EQ(of_sum->border, own->border);
+      EXPECT_EQ(of_sum->light_name, own->light_name);
+      EXPECT_LT(of_sum->energy, kMostWorse * own->energy)
+          << "seed " << seed << ", " << at.light.name;
+      EXPECT_LE(NumTexels(PlanOf(*of_sum)), options.texels);
+      ++num_cases;
+    }
+  }
+  EXPECT_GE(num_cases, 6);
+}
+
+// The twin of its energies, which are those of the frames by EvaluatePlan() added up.
+TEST(RaySum, HasTheEnergyOfAllFrames) {
+  constexpr double kTolerance = 1e-6;  // frames whose rays are in other coordinates
+  int num_cases = 0;
+  for (uint64_t seed = 1; seed <= 3; ++seed) {
+    const PlanWalk walk(seed, kNumFrames, kStep);
+    for (const Light& light : walk.lights) {
+      const PlanOptions options = OptionsOf(3);
+      const auto plan = FitRaySum(SumOfWalk(walk, light, options.fit, kAllSamples), options);
+      if (!plan.ok()) continue;
+      double energy = 0.0;
+      int64_t num_used = 0;
+      for (const Surfaces& surfaces : walk.frames) {
+        const auto view = ViewLight(surfaces, light, Border::kLit, options.fit);
+        const auto figures = EvaluatePlan(*view, PlanOf(*plan), options.fit);
+        if (!figures.ok()) continue;  // no sample in this frame
+        energy += figures->energy;
+      }
+      for (const LightMatrix& map : plan->maps) num_used += map.figures.samples.used;
+      EXPECT_NEAR(plan->energy, energy, kTolerance * energy)
+          << "seed " << seed << ", " << light.name;
+      EXPECT_GT(num_used, 0);
+      ++num_cases;
+    }
+  }
+  EXPECT_GE(num_cases, 5);
+}
+
+TEST(RaySum, PlanHoldsWhatMustBeHeldInEveryFrame) {
+  constexpr double kDepthTolerance = 1e-7;  // rounding
+  int num_needed = 0;
+  for (uint64_t seed = 1; seed <= 3; ++seed) {
+    const PlanWalk walk(seed, kNumFrames, kStep);
+    for (const Light& light : walk.lights) {
+      for (const int most_samples : {kAllSamples, 200}) {
+        const PlanOptions options = OptionsOf(4);
+        const auto plan = FitRaySum(SumOfWalk(walk, light, options.fit, most_samples), options);
+        if (!plan.ok()) continue;
+        const Plan looked_up = PlanOf(*plan);
+        const auto look_up = PlanLookUp::Create(looked_up, light);
+        ASSERT_THAT(look_up, IsOk());
+        int num_outside = 0, num_out_of_depth = 0;
+        for (const Surfaces& surfaces : walk.frames) {
+          const NeededSurfaces needed(surfaces, light, Border::kLit);
+          ForEachReceiver(
+              surfaces,
+              needed.words(),
+              uint32_t{1} << light.shadow_bit,
+              [&](const Eigen::Vector3d& world) {
+                ++num_needed;
+                const int k = look_up->At(world).map;
+                num_outside += k < 0 ? 1 : 0;
+                if (k < 0) return;
+                const Eigen::Vector4d at = looked_up.maps[k].map_from_world * world.homogeneous();
+                const double z = at.z() / at.w();
+                num_out_of_depth += z < -kDepthTolerance || z > 1.0 + kDepthTolerance ? 1 : 0;
+              });
+          // Lit ones are not clipped either.
+          ForEachReceiver(surfaces, {}, 0, [&](const Eigen::Vector3d& world) {
+            const int k = look_up->At(world).map;
+            if (k < 0) return;
+            const Eigen::Vector4d at = looked_up.maps[k].map_from_world * world.homogeneous();
+            num_out_of_depth += at.z() / at.w() > 1.0 + kDepthTolerance ? 1 : 0;
+          });
+        }
+        EXPECT_EQ(num_outside, 0) << "seed " << seed << ", " << light.name;
+        EXPECT_EQ(num_out_of_depth, 0) << "seed " << seed << ", " << light.name;
+      }
+    }
+  }
+  EXPECT_GT(num_needed, 5000);
+}
+
+TEST(RaySum, ThinnedSamplesCountForTheOthers) {
+  constexpr double kTolerance = 0.1;  // the share of boundary samples among those that are taken
+  const PlanCase at(1, 0);
+  const RaySum all = SumOfRays(at.rays, at.view, kAllSamples);
+  const RaySum some = SumOfRays(at.rays, at.view, 400);
+  EXPECT_LE(some.samples.size(), 400u);
+  EXPECT_GT(all.samples.size(), 1000u);
+  EXPECT_EQ(some.covered.size(), all.covered.size());
+  double weight = 0.0, thinned_weight = 0.0;
+  for (const RaySample& sample : all.samples) weight += sample.weight;
+  for (const RaySample& sample : some.samples) thinned_weight += sample.weight;
+  EXPECT_NEAR(thinned_weight, weight, kTolerance * weight);
+}
+
+TEST(RaySum, SaysWhatDoesNotAdd) {
+  const PlanCase sun(1, 0), lamp(1, 1), dark(1, 0, Border::kDark);
+  RaySum sum = SumOfRays(sun.rays, sun.view, kAllSamples);
+  const size_t num_samples = sum.samples.size();
+  EXPECT_THAT(AddToSum(SumOfRays(lamp.rays, lamp.view, kAllSamples), &sum),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(lamp.light.name)));
+  EXPECT_THAT(AddToSum(SumOfRays(dark.rays, dark.view, kAllSamples), &sum),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("dark")));
+  EXPECT_EQ(sum.samples.size(), num_samples);
+  EXPECT_EQ(sum.num_frames, 1);
+  PlanOptions options = OptionsOf(4);
+  options.max_maps = 0;
+  EXPECT_THAT(FitRaySum(sum, options),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("max_maps")));
+}
+
+}  // namespace
+}  // namespace lightfit
