@@ -186,7 +186,7 @@ int64_t ReadbackHeader::depth_bytes() const { return num_pixels() * BytesOf(dept
 
 int64_t ReadbackHeader::buffer_bytes() const {
   return num_pixels() * int64_t{sizeof(float)} + shadow.buffer_bytes() + facing.buffer_bytes() +
-         mapped.buffer_bytes();
+         mapped.buffer_bytes() + fine.buffer_bytes();
 }
 
 absl::StatusOr<ReadbackHeader> ReadbackHeaderFromProto(const v1::Readback& proto,
@@ -221,6 +221,8 @@ absl::StatusOr<ReadbackHeader> ReadbackHeaderFromProto(const v1::Readback& proto
   if (!facing.ok()) return facing.status();
   absl::StatusOr<BitsHeader> mapped = OptionalHeaderOf(MappedFields(proto), num_lights, num_pixels);
   if (!mapped.ok()) return mapped.status();
+  const absl::StatusOr<FineCoverHeader> fine = FineCoverHeaderFromProto(proto, num_lights, limits);
+  if (!fine.ok()) return fine.status();
 
   ReadbackHeader header;
   header.camera = camera->camera;
@@ -229,6 +231,7 @@ absl::StatusOr<ReadbackHeader> ReadbackHeaderFromProto(const v1::Readback& proto
   header.shadow = *std::move(shadow);
   header.facing = *std::move(facing);
   header.mapped = *std::move(mapped);
+  header.fine = *fine;
   if (absl::Status status = ValidateCamera(header.camera, header.depth_kind); !status.ok()) {
     return InReadback(status);
   }
@@ -243,16 +246,26 @@ void ClearPixels(v1::Readback* readback) {
   readback->clear_facing_planes();
   readback->clear_mapped_bits();
   readback->clear_mapped_planes();
+  if (!readback->has_fine_cover()) return;
+  readback->mutable_fine_cover()->clear_nearest();
+  readback->mutable_fine_cover()->clear_furthest();
+  readback->mutable_fine_cover()->clear_shadow_bits();
+  readback->mutable_fine_cover()->clear_lit_bits();
 }
 
 PixelBuffer::PixelBuffer(const ReadbackHeader& header)
-    : header_(header), shadow_(header.shadow), facing_(header.facing), mapped_(header.mapped) {}
+    : header_(header),
+      shadow_(header.shadow),
+      facing_(header.facing),
+      mapped_(header.mapped),
+      fine_(header.fine) {}
 
 absl::Status PixelBuffer::Append(const v1::Readback& proto) {
   absl::Status status = AppendDepth(proto.depth());
   if (status.ok()) status = AppendTo(ShadowFields(proto), &shadow_);
   if (status.ok()) status = AppendTo(FacingFields(proto), &facing_);
   if (status.ok()) status = AppendTo(MappedFields(proto), &mapped_);
+  if (status.ok()) status = fine_.Append(proto.fine_cover());
   return status;
 }
 
@@ -270,6 +283,7 @@ absl::Status PixelBuffer::Append(const v1::PixelChunk& chunk) {
     status =
         AppendTo(chunk.mapped_bits(), chunk.mapped_plane_index(), chunk.mapped_plane(), &mapped_);
   }
+  if (status.ok()) status = fine_.Append(chunk);
   return status;
 }
 
@@ -300,11 +314,17 @@ absl::Status PixelBuffer::CheckComplete() const {
   for (const BitBuffer* bits : {&shadow_, &facing_, &mapped_}) {
     if (status.ok()) status = bits->CheckComplete();
   }
+  if (status.ok() && !header_.fine.is_absent()) status = fine_.CheckComplete();
   return status;
 }
 
-Readback PixelBuffer::View() const {
-  return ReadbackOf(header_, depth_, shadow_.words(), facing_.words(), mapped_.words());
+Readback PixelBuffer::View(FineCover* fine_cover) const {
+  Readback view = ReadbackOf(header_, depth_, shadow_.words(), facing_.words(), mapped_.words());
+  if (!header_.fine.is_absent() && fine_cover != nullptr) {
+    *fine_cover = fine_.View();
+    view.fine_cover = fine_cover;
+  }
+  return view;
 }
 
 Readback ReadbackOf(const ReadbackHeader& header,
@@ -355,7 +375,7 @@ absl::StatusOr<ReadbackView> ReadbackView::Of(const v1::Readback& proto,
   const BitsFields shadow = ShadowFields(proto), facing = FacingFields(proto),
                    mapped = MappedFields(proto);
   const bool is_usable_as_is =
-      header->depth_format == v1::DEPTH_FORMAT_FLOAT32 &&
+      header->fine.is_absent() && header->depth_format == v1::DEPTH_FORMAT_FLOAT32 &&
       static_cast<int64_t>(proto.depth().size()) == header->depth_bytes() &&
       IsAligned(proto.depth()) && IsUsableAsIs(shadow, header->shadow) &&
       IsUsableAsIs(facing, header->facing) && IsUsableAsIs(mapped, header->mapped);
@@ -371,7 +391,7 @@ absl::StatusOr<ReadbackView> ReadbackView::Of(const v1::Readback& proto,
     if (status.ok()) status = result.buffer_.Append(proto);
     if (status.ok()) status = result.buffer_.CheckComplete();
     if (!status.ok()) return status;
-    result.view_ = result.buffer_.View();
+    result.view_ = result.buffer_.View(result.fine_cover_.get());
   }
   if (absl::Status status = CheckBoundary(result.view_, limits); !status.ok()) return status;
   return result;

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -13,6 +14,7 @@
 #include "absl/strings/string_view.h"
 #include "calls/bit_buffer.h"
 #include "calls/call_context.h"
+#include "calls/fine_cover_buffer.h"
 #include "geometry/camera.h"
 #include "lightfit/v1/readback.pb.h"
 #include "optimizer/readback/readback.h"
@@ -26,6 +28,7 @@ struct ReadbackHeader {
   v1::DepthFormat depth_format = v1::DEPTH_FORMAT_FLOAT32;
   BitsHeader shadow;
   BitsHeader facing, mapped;  // may be absent
+  FineCoverHeader fine;       // likewise
 
   int64_t num_pixels() const { return int64_t{camera.width} * camera.height; }
   int64_t depth_bytes() const;  // as sent
@@ -58,8 +61,8 @@ class PixelBuffer {
   absl::Status CheckComplete() const;
   bool is_complete() const { return CheckComplete().ok(); }
 
-  // Of a complete buffer; refers to it.
-  Readback View() const;
+  // Of a complete buffer; refers to it, and to `fine_cover`, which it fills in. Null: without.
+  Readback View(FineCover* fine_cover = nullptr) const;
 
  private:
   absl::Status AppendDepth(absl::string_view bytes);
@@ -68,6 +71,7 @@ class PixelBuffer {
   std::vector<float> depth_;
   int64_t num_depth_bytes_ = 0;  // arrived so far
   BitBuffer shadow_, facing_, mapped_;
+  FineCoverBuffer fine_;
 };
 
 // The read-back of a header whose pixels are there already. Refers to them.
@@ -95,9 +99,11 @@ class ReadbackView {
   const Readback& view() const { return view_; }
 
  private:
-  explicit ReadbackView(const ReadbackHeader& header) : buffer_(header) {}
+  explicit ReadbackView(const ReadbackHeader& header)
+      : buffer_(header), fine_cover_(std::make_unique<FineCover>()) {}
 
   PixelBuffer buffer_;
+  std::unique_ptr<FineCover> fine_cover_;  // stays in place when the view moves
   Readback view_;
 };
 

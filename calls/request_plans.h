@@ -14,6 +14,7 @@
 #include "calls/request_lights.h"
 #include "lightfit/v1/options.pb.h"
 #include "lightfit/v1/result.pb.h"
+#include "optimizer/readback/readback.h"
 #include "optimizer/readback/surfaces.h"
 #include "partition/plan_options.h"
 #include "wire/result_json.h"
@@ -43,6 +44,9 @@ absl::StatusOr<std::optional<PlanOptions>> PlanOptionsOfRequest(const Request& r
   if (!options.ok()) return options.status();
   return std::optional<PlanOptions>(*options);
 }
+
+// InvalidArgument for a finer cover, which plans do not look at yet.
+absl::Status CheckServesPlans(const Readback& readback);
 
 // A light's plan and its figures; the forecast only where `foretells`. As `lightfit fit --maps`.
 LightFit PlanFitOf(const RequestLight& light,

@@ -153,6 +153,9 @@ absl::StatusOr<v1::FitResult> TrackSession::Track(const v1::TrackFrame& frame,
   const absl::StatusOr<std::vector<RequestLight>> lights = LightsOfRequest(frame.lights());
   if (!lights.ok()) return lights.status();
   if (absl::Status status = ValidateReadback(pixels); !status.ok()) return status;
+  if (plans_.has_value()) {
+    if (absl::Status status = CheckServesPlans(pixels); !status.ok()) return status;
+  }
   std::optional<PlanTrackers> plans = plans_;
   absl::StatusOr<TrackedFits> tracked =
       plans.has_value() ? plans->Update(pixels, *lights) : TrackMatrices(*lights, pixels);

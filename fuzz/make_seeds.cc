@@ -106,6 +106,29 @@ v1::PlanOptions SmallPlan() {
   return options;
 }
 
+// Each pixel as two by two cells.
+void AddFineCover(const SmallReadback& yard, v1::Readback* readback) {
+  const int width = yard.file.camera.width, height = yard.file.camera.height;
+  std::vector<float> nearest;
+  std::vector<uint32_t> shadow, lit;
+  for (int y = 0; y < 2 * height; ++y) {
+    for (int x = 0; x < 2 * width; ++x) {
+      const int pixel = y / 2 * width + x / 2;
+      nearest.push_back(yard.file.depth[pixel]);
+      shadow.push_back(yard.file.shadow_bits[pixel]);
+      lit.push_back(~yard.file.shadow_bits[pixel] & 3U);
+    }
+  }
+  v1::FineCover& cover = *readback->mutable_fine_cover();
+  cover.set_columns(2 * width);
+  cover.set_rows(2 * height);
+  cover.set_nearest(BytesOf(nearest));
+  cover.set_furthest(BytesOf(nearest));
+  cover.set_shadow_bits(BytesOf(shadow));
+  cover.set_lit_bits(BytesOf(lit));
+  cover.set_lit_lights(3);
+}
+
 // The same pixels as halves and planes, and other choices.
 void UseOtherForms(const SmallReadback& yard, v1::Readback* readback) {
   readback->set_depth_format(v1::DEPTH_FORMAT_FLOAT16);
@@ -188,6 +211,9 @@ class Seeds {
     plan.clear_map();
     *plan.mutable_plan_options() = SmallPlan();
     Save("fit/plan", plan);
+    v1::FitRequest cover = fit;
+    AddFineCover(yard_, cover.mutable_readback());
+    Save("fit/cover", cover);
     WriteStreams(fit);
 
     v1::EvaluateRequest evaluate = RequestOf<v1::EvaluateRequest>(yard_);

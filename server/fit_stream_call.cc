@@ -81,7 +81,8 @@ absl::Status FitStreamCall::Submit() {
 
 void FitStreamCall::Compute() {
   const CallContext context = call_.context();
-  const Readback readback = pixels_->View();
+  FineCover fine_cover;
+  const Readback readback = pixels_->View(&fine_cover);
   const absl::Status fits = CheckBoundary(readback, context.limits);
   absl::StatusOr<v1::FitResult> result = fits.ok() ? AnswerFit(request_, readback, context) : fits;
   if (!result.ok()) return End(result.status());

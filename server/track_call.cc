@@ -64,7 +64,8 @@ absl::Status TrackCall::Take(v1::TrackRequest* request) {
     if (session_.has_value()) {
       return absl::InvalidArgumentError("setup: is here already, want it once");
     }
-    absl::StatusOr<TrackSession> session = TrackSession::Begin(request->setup(), call_.parts().limits.calls);
+    absl::StatusOr<TrackSession> session =
+        TrackSession::Begin(request->setup(), call_.parts().limits.calls);
     if (!session.ok()) return session.status();
     session_.emplace(*std::move(session));
     return absl::OkStatus();
@@ -126,8 +127,9 @@ void TrackCall::Answer() {
   if (frame_status_.ok()) {
     frame_status_ = CheckBoundary(pixels_->View(), call_.parts().limits.calls);
   }
+  FineCover fine_cover;
   const absl::StatusOr<Readback> view =
-      frame_status_.ok() ? absl::StatusOr<Readback>(pixels_->View()) : frame_status_;
+      frame_status_.ok() ? absl::StatusOr<Readback>(pixels_->View(&fine_cover)) : frame_status_;
   result_ = session_->Update(frame_, view, call_.context().stop);
   pixels_.reset();
   call_.Release();

@@ -3,20 +3,27 @@
 namespace lightfit {
 namespace {
 
+int64_t BytesOfFineCover(const v1::FineCover& fine) {
+  return static_cast<int64_t>(fine.nearest().size() + fine.furthest().size() +
+                              fine.shadow_bits().size() + fine.lit_bits().size());
+}
+
 // Pixels that cannot be used where they are in the message are converted: 4 bytes for the depth,
-// and 4 for each kind of bits.
+// and 4 for each kind of bits; with a finer cover, which is copied, all are.
 RequestSize SizeWithReadback(int64_t message_bytes, const v1::Readback& readback) {
   constexpr int64_t kConvertedValueBytes = 4;
   const bool is_half = readback.depth_format() == v1::DEPTH_FORMAT_FLOAT16;
   const int64_t pixels = static_cast<int64_t>(readback.depth().size()) / (is_half ? 2 : 4);
   const bool has_facing_planes = readback.facing_planes_size() > 0;
   const bool has_mapped_planes = readback.mapped_planes_size() > 0;
-  if (!is_half && readback.shadow_planes_size() == 0 && !has_facing_planes && !has_mapped_planes) {
+  const int64_t fine_bytes = BytesOfFineCover(readback.fine_cover());
+  if (!is_half && readback.shadow_planes_size() == 0 && !has_facing_planes && !has_mapped_planes &&
+      fine_bytes == 0) {
     return {pixels, message_bytes};
   }
   const int num_values = 2 + (has_facing_planes || !readback.facing_bits().empty() ? 1 : 0) +
                          (has_mapped_planes || !readback.mapped_bits().empty() ? 1 : 0);
-  return {pixels, message_bytes + num_values * kConvertedValueBytes * pixels};
+  return {pixels, message_bytes + fine_bytes + num_values * kConvertedValueBytes * pixels};
 }
 
 int64_t BytesOf(const google::protobuf::Message& message) {

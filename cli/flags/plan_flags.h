@@ -7,7 +7,9 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
+#include "optimizer/sizing/map_sizes.h"
 #include "partition/plan_options.h"
 
 namespace CLI {
@@ -21,13 +23,25 @@ struct PlanFlags {
   int64_t texels = PlanOptions().texels;  // of all maps of a light
   std::optional<MapSize> each;            // --map, where it was given
   double guard_texels = 0.0;
+  MapSizeRules rules;      // of the sizes of maps
+  bool has_rules = false;  // whether any of them was given
 };
 
-// Declares --maps, --texels and --guard on `app`, which has --map. All maps together have by
-// default the texels of `one_map`, the default of --map.
+// Declares the rules of sizes, --multiple and so on.
+void DeclareSizeFlags(CLI::App* app, const std::string& group, MapSizeRules* rules);
+bool HasSizeFlags(const CLI::App& app);
+
+// Declares --maps, --texels, --guard and the rules of sizes on `app`, which has --map. All maps
+// together have by default the texels of `one_map`, the default of --map.
 void DeclarePlanFlags(CLI::App* app, MapSize one_map, PlanFlags* flags);
 
-// Throws CLI::ValidationError where options do not go together; takes over --map, which is `map`.
+// --maps and --guard alone.
+void DeclareMapsFlags(CLI::App* app, PlanFlags* flags);
+
+// Throws CLI::ValidationError where something was given that plans have no use for.
+void CheckNotUsedByPlans(const CLI::App& app);
+
+// The same where options do not go together; takes over --map, which is `map`.
 void CheckPlanFlags(const CLI::App& app, MapSize map, PlanFlags* flags);
 
 // Nothing where one map of each light is wanted.

@@ -34,7 +34,8 @@ class Stream {
   absl::StatusOr<v1::FitResult> Answer() const {
     if (!pixels_.has_value()) return absl::InvalidArgumentError("want a request");
     if (absl::Status status = pixels_->CheckComplete(); !status.ok()) return status;
-    const Readback readback = pixels_->View();
+    FineCover fine_cover;
+    const Readback readback = pixels_->View(&fine_cover);
     const auto num_pixels = static_cast<size_t>(readback.camera.width) * readback.camera.height;
     const auto is_all = [&](const auto& values) { return values.size() == num_pixels; };
     Promise(is_all(readback.depth) && is_all(readback.shadow_bits) &&

@@ -52,9 +52,10 @@ class Stream {
   // A frame that cannot be used is answered with its status, and the next one may come.
   absl::Status AnswerWhenReady(const absl::Status& frame_status) {
     if (frame_status.ok() && !pixels_->is_complete()) return absl::OkStatus();
+    FineCover fine_cover;
     const v1::TrackResult result = session_->Update(
         frame_,
-        frame_status.ok() ? absl::StatusOr<Readback>(pixels_->View()) : frame_status,
+        frame_status.ok() ? absl::StatusOr<Readback>(pixels_->View(&fine_cover)) : frame_status,
         std::stop_token());
     PromiseMessage(result);
     Promise(result.number() == frame_.number(), "a frame's number comes back");

@@ -1,27 +1,15 @@
 #include "optimizer/tracking/async_optimizer.h"
 
 #include <algorithm>
-#include <atomic>
-#include <chrono>
-#include <system_error>
-#include <thread>
 #include <utility>
 
 #include "absl/strings/str_format.h"
 #include "absl/types/span.h"
-#include "base/scratch.h"
-#include "base/stop.h"
-#include "base/triple_buffer.h"
+#include "base/latest_worker.h"
 
 namespace lightfit {
 
 namespace {
-
-// Waking a sleeper takes the render thread 10 us and more. While frames keep coming the optimizer
-// therefore naps between looks for the next one: later by half a nap on average, and each nap is
-// about 20 us of work. Once none has come for so many naps it sleeps until it is woken.
-constexpr auto kNap = std::chrono::milliseconds(1);
-constexpr int kNumNaps = 100;
 
 // A frame on its way to the optimizer.
 struct Submission {
@@ -56,19 +44,36 @@ void Update(const Submission& submission, Tracker* tracker, FrameMatrices* matri
     return;
   }
   tracker->set_options(submission.options);
-  const auto results = tracker->Update(readback.View(), readback.lights, readback.map);
+  FineCover cover;
+  const auto results = tracker->Update(readback.View(&cover), readback.lights, readback.map);
   for (size_t i = 0; i < num_lights; ++i) Publish(results[i], &matrices->lights[i]);
 }
 
 }  // namespace
 
-Readback FrameReadback::View() const {
+FineCover FrameFineCover::View() const {
+  FineCover view;
+  view.columns = columns;
+  view.rows = rows;
+  view.nearest = nearest;
+  view.furthest = furthest;
+  view.shadow_bits = shadow_bits;
+  view.lit_bits = lit_bits;
+  view.lit_lights = lit_lights;
+  return view;
+}
+
+Readback FrameReadback::View(FineCover* cover) const {
   Readback view;
   view.camera = camera;
   view.depth = depth;
   view.depth_kind = depth_kind;
   view.shadow_bits = shadow_bits;
   view.facing_bits = facing_bits;
+  if (cover != nullptr && (fine_cover.columns != 0 || fine_cover.rows != 0)) {
+    *cover = fine_cover.View();
+    view.fine_cover = cover;
+  }
   return view;
 }
 
@@ -79,76 +84,24 @@ const FrameLight* FrameMatrices::Find(absl::string_view name) const {
   return nullptr;
 }
 
-// What the threads share. It stays in place when the AsyncOptimizer moves.
+// It stays in place when the AsyncOptimizer moves.
 struct AsyncOptimizer::Shared {
-  TripleBuffer<Submission> submissions;  // from the submitting thread to the optimizer
-  TripleBuffer<FrameMatrices> matrices;  // from the optimizer to the polling thread
-  TrackerOptions options;                // the submitting thread's
-
-  // Counts everything the optimizer should wake up for. It reads this first and looks for work
-  // second, so that what comes in between changes the number and does not let it fall asleep. All
-  // accesses are sequentially consistent: whoever counts up sees a sleeper, or the sleeper sees it.
-  std::atomic<uint32_t> wake = 0;
-
-  std::atomic<int64_t> num_submitted = 0, num_done = 0, num_skipped = 0;
-  std::jthread thread;  // its stop ends the frame in work, and then the thread
-
-  // A system call, but only when the optimizer sleeps; naps end by themselves.
-  void WakeUp() {
-    wake.fetch_add(1);
-    wake.notify_one();
-  }
-
-  // The optimizer's thread.
-  void Run(const std::stop_token& stop) {
-    const StopScope stop_scope(stop);
-    ScratchPool pool;  // no frame but the first few takes anything from the heap
-    Tracker tracker{TrackerOptions()};
-    int num_naps = 0;
-    while (true) {
-      const uint32_t wake_before = wake.load();
-      if (stop.stop_requested()) return;
-      if (!submissions.Take()) {
-        if (num_naps < kNumNaps) {
-          ++num_naps;
-          std::this_thread::sleep_for(kNap);
-        } else {
-          wake.wait(wake_before);
-        }
-        continue;
-      }
-      num_naps = 0;
-      {
-        const ScratchScope scope(&pool);
-        Update(submissions.front(), &tracker, &matrices.back());
-      }
-      if (stop.stop_requested()) return;
-      num_done.fetch_add(1);  // first, so that nobody polls a frame that is not counted
-      matrices.Publish();
-    }
-  }
-
-  ~Shared() {
-    if (!thread.joinable()) return;
-    thread.request_stop();
-    WakeUp();
-    thread.join();
-  }
+  TrackerOptions options;                                           // the submitting thread's
+  Tracker tracker{TrackerOptions()};                                // the worker's
+  std::unique_ptr<LatestWorker<Submission, FrameMatrices>> worker;  // ends before what it uses
 };
 
 absl::StatusOr<AsyncOptimizer> AsyncOptimizer::Start(const TrackerOptions& options) {
   if (absl::Status status = ValidateTrackerOptions(options); !status.ok()) return status;
   auto shared = std::make_unique<Shared>();
   shared->options = options;
-  try {
-    shared->thread =
-        std::jthread([shared = shared.get()](const std::stop_token& stop) { shared->Run(stop); });
-  } catch (const std::system_error& error) {
-    return absl::ResourceExhaustedError(
-        absl::StrFormat("cannot start the optimizer's thread: %s; raise the limit of threads, or "
-                        "call a Tracker in a thread of your own",
-                        error.what()));
-  }
+  auto worker = LatestWorker<Submission, FrameMatrices>::Start(
+      [shared = shared.get()](const Submission& submission, FrameMatrices* matrices) {
+        Update(submission, &shared->tracker, matrices);
+      },
+      "raise the limit of threads, or call a Tracker in a thread of your own");
+  if (!worker.ok()) return worker.status();
+  shared->worker = *std::move(worker);
   return AsyncOptimizer(std::move(shared));
 }
 
@@ -157,13 +110,11 @@ AsyncOptimizer::AsyncOptimizer(AsyncOptimizer&&) noexcept = default;
 AsyncOptimizer& AsyncOptimizer::operator=(AsyncOptimizer&&) noexcept = default;
 AsyncOptimizer::~AsyncOptimizer() = default;
 
-FrameReadback& AsyncOptimizer::Lend() { return shared_->submissions.back().readback; }
+FrameReadback& AsyncOptimizer::Lend() { return shared_->worker->Lend().readback; }
 
 void AsyncOptimizer::Submit() {
-  shared_->submissions.back().options = shared_->options;
-  shared_->num_submitted.fetch_add(1);
-  if (shared_->submissions.Publish()) shared_->num_skipped.fetch_add(1);
-  shared_->WakeUp();
+  shared_->worker->Lend().options = shared_->options;
+  shared_->worker->Submit();
 }
 
 absl::Status AsyncOptimizer::SetOptions(const TrackerOptions& options) {
@@ -172,17 +123,11 @@ absl::Status AsyncOptimizer::SetOptions(const TrackerOptions& options) {
   return status;
 }
 
-const FrameMatrices* AsyncOptimizer::Poll() {
-  return shared_->matrices.Take() ? &shared_->matrices.front() : nullptr;
-}
+const FrameMatrices* AsyncOptimizer::Poll() { return shared_->worker->Poll(); }
 
 AsyncOptimizer::Counts AsyncOptimizer::counts() const {
-  // Submitted last: it is never less than the others together.
-  Counts counts;
-  counts.done = shared_->num_done.load();
-  counts.skipped = shared_->num_skipped.load();
-  counts.submitted = shared_->num_submitted.load();
-  return counts;
+  const auto counts = shared_->worker->counts();
+  return {counts.submitted, counts.done, counts.skipped};
 }
 
 }  // namespace lightfit

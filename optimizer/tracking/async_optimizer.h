@@ -27,9 +27,20 @@
 #include "geometry/camera.h"
 #include "geometry/light.h"
 #include "geometry/map_size.h"
+#include "optimizer/readback/readback.h"
 #include "optimizer/tracking/tracker.h"
 
 namespace lightfit {
+
+// As FineCover, whose buffers these are.
+struct FrameFineCover {
+  int columns = 0, rows = 0;  // 0: there is none
+  std::vector<float> nearest, furthest;
+  std::vector<uint32_t> shadow_bits, lit_bits;
+  uint32_t lit_lights = ~uint32_t{0};
+
+  FineCover View() const;
+};
 
 // What the submitting thread fills in, all of it in every frame. The vectors keep their memory:
 // resize() them to the read-back's size, which allocates only when it grows, then write; assign
@@ -41,12 +52,13 @@ struct FrameReadback {
   std::vector<float> depth;           // as Readback::depth
   std::vector<uint32_t> shadow_bits;  // as Readback::shadow_bits
   std::vector<uint32_t> facing_bits;  // as Readback::facing_bits; empty: not known
+  FrameFineCover fine_cover;          // as Readback::fine_cover
   // At most kMaxLights, known by their names, which must differ. One that is left out is forgotten.
   std::vector<Light> lights;
   MapSize map = {1024, 1024};  // texels, of every light's map
 
-  // Refers to this object's buffers.
-  Readback View() const;
+  // Refers to this object's buffers, and to `cover`, which it fills in. Null: without finer cover.
+  Readback View(FineCover* cover = nullptr) const;
 };
 
 struct FrameLight {

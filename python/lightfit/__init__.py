@@ -32,6 +32,7 @@ from lightfit.errors import (
     UnavailableError,
 )
 from lightfit.calls import Calls, Track
+from lightfit.cover import FineCover
 from lightfit.exr import ExrReadback, read_exr
 from lightfit.inputs import Camera, Light
 from lightfit.local import Local
@@ -83,6 +84,7 @@ __all__ = [
     "Evaluation",
     "ExrReadback",
     "FailedPreconditionError",
+    "FineCover",
     "FitOptions",
     "FitResult",
     "Footprint",

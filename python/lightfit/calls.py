@@ -6,6 +6,7 @@ import abc
 from types import TracebackType
 from typing import Any, Iterable, Mapping, Optional, Sequence, Type
 
+from lightfit.cover import FineCover
 from lightfit.errors import error_of
 from lightfit.exr import ExrReadback, read_exr
 from lightfit.inputs import (
@@ -54,19 +55,20 @@ class Track(abc.ABC):
         *,
         facing: Any = None,
         mapped: Any = None,
+        cover: Optional[FineCover] = None,
         source: str = "",
     ) -> FitResult:
         """The matrices, or plans, of the next frame.
 
         number: the caller's, comes back in result.message.shot.number.
-        depth, shadow, camera, lights, facing, mapped: as for `fit`. A light is known by its name,
+        depth, shadow, camera, lights, facing, mapped, cover: as for `fit`, plans without cover. A light is known by its name,
             and forgotten when a frame is without it.
 
         LightResult.action says what became of the matrix of the frame before, PlanMap.action of
         each map of a plan. Raises LightfitError when the frame cannot be used; the tracker stays as
         it was, and the next frame may come.
         """
-        parts = readback_parts(depth, shadow, camera, lights, source, facing, mapped)
+        parts = readback_parts(depth, shadow, camera, lights, source, facing, mapped, cover)
         answer = self._update(track_frame(number, parts), parts.pixels)
         if answer.status.code != 0:
             raise error_of(answer.status.code, answer.status.message, self._request_id())
@@ -122,6 +124,7 @@ class Calls(abc.ABC):
         foretell_wrong: bool = False,
         facing: Any = None,
         mapped: Any = None,
+        cover: Optional[FineCover] = None,
         source: str = "",
         timeout_s: Optional[float] = None,
         request_id: Optional[str] = None,
@@ -146,11 +149,13 @@ class Calls(abc.ABC):
             True or 255 where they do; or one (height, width) plane per light, None where it is not
             known. Optional; "auto" needs it.
         mapped: likewise, what the map that is drawn with says: 1 where it finds shadow. Optional.
+        cover: the same frame with more pixels, `FineCover(depth, shadow)`: what is thinner than a
+            pixel of the read-back has room in the map then. Optional.
         source: where the read-back came from; comes back in result.message.readback.source.
 
         Each light has its own status: a light without a matrix does not raise.
         """
-        parts = readback_parts(depth, shadow, camera, lights, source, facing, mapped)
+        parts = readback_parts(depth, shadow, camera, lights, source, facing, mapped, cover)
         request = fit_request(parts, map_size, options, clip, foretell_wrong)
         return FitResult.of(self._fit(request, parts.pixels, timeout_s, request_id))
 
@@ -170,8 +175,8 @@ class Calls(abc.ABC):
         """`fit` of an EXR read-back, as `lightfit fit PATH --lights LIGHTS` does it.
 
         The file is read here, also for a server. exr: the further arguments of `lightfit.read_exr`
-        (camera, depth_kind, depth_channel, shadow_channel, camera_convention ...). A light without
-        a shadow channel has its own status.
+        (camera, depth_kind, depth_channel, shadow_channel, camera_convention, cover ...). A light
+        without a shadow channel has its own status.
         """
         return self._fit_exr(
             path, lights, map_size, options, clip, foretell_wrong, timeout_s, request_id, exr
@@ -335,6 +340,7 @@ class Calls(abc.ABC):
         options: Optional[Options] = None,
         facing: Any = None,
         mapped: Any = None,
+        cover: Optional[FineCover] = None,
         source: str = "",
         timeout_s: Optional[float] = None,
         request_id: Optional[str] = None,
@@ -343,9 +349,9 @@ class Calls(abc.ABC):
 
         matrices: any number per light, `Candidate.map("sun", map_from_world, (1024, 1024))` or
             `Candidate.clip("sun", clip_from_world, (1024, 1024), clip="opengl")`.
-        depth, shadow, camera, lights, options, facing, mapped: as for `fit`.
+        depth, shadow, camera, lights, options, facing, mapped, cover: as for `fit`.
         """
-        parts = readback_parts(depth, shadow, camera, lights, source, facing, mapped)
+        parts = readback_parts(depth, shadow, camera, lights, source, facing, mapped, cover)
         request = evaluate_request(parts, matrices, options)
         return EvaluateResult.of(self._call("Evaluate", request, timeout_s, request_id))
 
@@ -365,6 +371,7 @@ class Calls(abc.ABC):
         clip: Clip = "vulkan",
         facing: Any = None,
         mapped: Any = None,
+        cover: Optional[FineCover] = None,
         source: str = "",
         timeout_s: Optional[float] = None,
         request_id: Optional[str] = None,
@@ -381,7 +388,7 @@ class Calls(abc.ABC):
         if any(part is not None for part in (depth, shadow, camera, lights)):
             given_camera: Any = camera  # says what it wants when it is missing, as the others do
             parts = readback_parts(
-                depth, shadow, given_camera, lights or (), source, facing, mapped
+                depth, shadow, given_camera, lights or (), source, facing, mapped, cover
             )
         request = allocate_request(
             parts, summaries, budget_texels, tolerance, weights, rules, options, clip

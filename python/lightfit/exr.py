@@ -10,6 +10,7 @@ import numpy
 from numpy.typing import NDArray
 
 from lightfit import _load
+from lightfit.cover import FineCover
 from lightfit.inputs import AnyCamera, Camera, Lights, Path_, depth_kind_number, light_messages
 from lightfit.request import ReadbackParts, readback_parts
 from lightfit.v1 import camera_pb2, light_pb2, result_pb2
@@ -33,6 +34,8 @@ class ExrReadback:
     facing: Optional[Planes] = None  # True where the surface faces the light
     mapped: Optional[Planes] = None  # True where the map that is drawn with says shadow
 
+    cover: Optional[FineCover] = None  # of a second, larger file
+
     def parts(self) -> ReadbackParts:
         return readback_parts(
             self.depth,
@@ -42,6 +45,7 @@ class ExrReadback:
             self.path,
             self.facing,
             self.mapped,
+            self.cover,
         )
 
 
@@ -61,6 +65,7 @@ def read_exr(
     shadow_bits_channel: str = "",
     facing_channel: str = "",
     mapped_channel: str = "",
+    cover: Optional[Path_] = None,
 ) -> ExrReadback:
     """Reads depth, shadows, camera, and what there is of facing and mapped.
 
@@ -80,6 +85,8 @@ def read_exr(
         "facing.{light}" unless given; they do above 0.5. Lights need not have one.
     mapped_channel: likewise, "mapped.{light}" unless given: what the map that is drawn with says,
         shadow above 0.5.
+    cover: a second file, the same frame with more pixels, as `lightfit fit --cover-readback`: its
+        channels have the same names, and its camera is the read-back's.
 
     Raises InvalidArgumentError when the file, its depth or its camera cannot be used. A light
     without a shadow channel has its own `light_status`, and no shadow.
@@ -102,9 +109,16 @@ def read_exr(
         message = camera.message if isinstance(camera, Camera) else camera
         options["camera"] = message.SerializeToString()
     name = os.fspath(path)
+    light_list = light_pb2.LightList(lights=messages).SerializeToString()
     depth, shadow, facing, mapped, found, statuses = _load.native().read_exr(
-        name, light_pb2.LightList(lights=messages).SerializeToString(), options
+        name, light_list, options
     )
+    fine = None
+    if cover is not None:
+        fine_depth, fine_shadow, lit = _load.native().read_cover_exr(
+            os.fspath(cover), light_list, options, found
+        )
+        fine = FineCover(fine_depth, fine_shadow, lit=_planes(lit, len(messages)))
     return ExrReadback(
         depth=depth,
         shadow=shadow,
@@ -114,6 +128,7 @@ def read_exr(
         path=name,
         facing=_planes(facing, len(messages)),
         mapped=_planes(mapped, len(messages)),
+        cover=fine,
     )
 
 

@@ -9,7 +9,7 @@ from lightfit import _load
 from lightfit.calls import Calls, Track
 from lightfit.errors import CancelledError, LightfitError
 from lightfit.pixels import Pixels
-from lightfit.v1 import allocation_pb2, result_pb2, service_pb2
+from lightfit.v1 import allocation_pb2, readback_pb2, result_pb2, service_pb2
 
 _ANSWERS: Dict[str, Any] = {
     "FitSummary": result_pb2.FitResult,
@@ -29,6 +29,7 @@ class Local(Calls):
         request_id: Optional[str],
     ) -> result_pb2.FitResult:
         native = _load.native()
+        _put_cover(pixels, request.readback)
         with _named(request_id):
             answer = native.fit(request.SerializeToString(), *_arrays(pixels), timeout_s)
         result = result_pb2.FitResult()
@@ -76,6 +77,7 @@ class LocalTrack(Track):
     def _update(self, frame: service_pb2.TrackFrame, pixels: Pixels) -> service_pb2.TrackResult:
         if self._session is None:
             raise CancelledError("track: is closed, want a new one", request_id=self._id)
+        _put_cover(pixels, frame.readback)
         with _named(self._id):
             answer = self._session.update(
                 frame.SerializeToString(), *_arrays(pixels), self._timeout_s
@@ -83,6 +85,12 @@ class LocalTrack(Track):
         result = service_pb2.TrackResult()
         result.ParseFromString(answer)
         return result
+
+
+def _put_cover(pixels: Pixels, readback: readback_pb2.Readback) -> None:
+    """The one part that goes to the compiled part in the message."""
+    if pixels.cover is not None:
+        pixels.cover.fill(readback)
 
 
 def _arrays(pixels: Pixels) -> Tuple[Any, Any, Any, Any]:

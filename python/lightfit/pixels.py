@@ -4,7 +4,7 @@ the compiled part takes. Pixels are copied only where their layout or type asks 
 from __future__ import annotations
 
 import dataclasses
-from typing import Any, Dict, Iterator, Optional, Sequence, Tuple
+from typing import Any, Dict, Iterator, Optional, Protocol, Sequence, Tuple
 
 import numpy
 from numpy.typing import NDArray
@@ -24,7 +24,23 @@ _MEANINGS = {
     "shadow": "light is blocked",
     "facing": "the surface faces the light",
     "mapped": "the map says shadow",
+    "lit": "light arrives",
 }
+
+class Part(Protocol):
+    """What comes with the depth."""
+
+    @property
+    def num_bytes(self) -> int: ...
+
+    def put_header(self, readback: readback_pb2.Readback) -> None:
+        """What is known before the pixels."""
+
+    def fill(self, readback: readback_pb2.Readback) -> None:
+        """Copies the pixels into a message."""
+
+    def chunks(self) -> Iterator[readback_pb2.PixelChunk]: ...
+
 
 Plane = NDArray[numpy.uint8]  # (h, w); 128 and above counts
 
@@ -62,11 +78,11 @@ class Bits:
     def chunks(self) -> Iterator[readback_pb2.PixelChunk]:
         fields: Dict[str, Any]
         if self.bits is not None:
-            for piece in _pieces(self.bits):
+            for piece in pieces(self.bits):
                 fields = {f"{self.name}_bits": piece}
                 yield readback_pb2.PixelChunk(**fields)
         for index, plane in self._known():
-            for piece in _pieces(plane):
+            for piece in pieces(plane):
                 fields = {f"{self.name}_plane": piece, f"{self.name}_plane_index": index}
                 yield readback_pb2.PixelChunk(**fields)
 
@@ -78,6 +94,12 @@ class Bits:
         for index, plane in self._known():
             words |= (plane >= 128).astype(numpy.uint32) << numpy.uint32(index)
         return words
+
+    def known_lights(self, num_lights: int) -> int:
+        """Bit l is that of light l."""
+        if self.planes is None:
+            return (1 << num_lights) - 1
+        return sum(1 << index for index, _ in self._known())
 
     def _known(self) -> Iterator[Tuple[int, Plane]]:
         for index, plane in enumerate(self.planes or ()):
@@ -91,6 +113,7 @@ class Pixels:
     shadow: Bits
     facing: Optional[Bits] = None
     mapped: Optional[Bits] = None
+    cover: Optional[Part] = None
 
     @property
     def height(self) -> int:
@@ -102,28 +125,28 @@ class Pixels:
 
     @property
     def num_bytes(self) -> int:
-        return int(self.depth.nbytes) + sum(bits.num_bytes for bits in self._all_bits())
+        return int(self.depth.nbytes) + sum(part.num_bytes for part in self._parts())
 
     def header(self) -> readback_pb2.Readback:
         """The formats, without pixels."""
         readback = readback_pb2.Readback()
         readback.depth_format = _DEPTH_FORMATS[self.depth.dtype.newbyteorder("=")]
-        for bits in self._all_bits():
-            bits.put_header(readback)
+        for part in self._parts():
+            part.put_header(readback)
         return readback
 
     def fill(self, readback: readback_pb2.Readback) -> None:
         """Copies all pixels into a message."""
         readback.depth = self.depth.tobytes()
-        for bits in self._all_bits():
-            bits.fill(readback)
+        for part in self._parts():
+            part.fill(readback)
 
     def chunks(self) -> Iterator[readback_pb2.PixelChunk]:
         """All pixels in messages of at most 1 MiB of them."""
-        for piece in _pieces(self.depth):
+        for piece in pieces(self.depth):
             yield readback_pb2.PixelChunk(depth=piece)
-        for bits in self._all_bits():
-            yield from bits.chunks()
+        for part in self._parts():
+            yield from part.chunks()
 
     def as_floats_and_bits(self) -> Tuple[NDArray[numpy.float32], NDArray[numpy.uint32]]:
         """What the library takes: (h, w) float32 and (h, w) uint32. Exact for halves, too."""
@@ -139,12 +162,14 @@ class Pixels:
             None if self.mapped is None else self.mapped.as_words(size),
         )
 
-    def _all_bits(self) -> Iterator[Bits]:
+    def _parts(self) -> Iterator[Part]:
         yield self.shadow
         if self.facing is not None:
             yield self.facing
         if self.mapped is not None:
             yield self.mapped
+        if self.cover is not None:
+            yield self.cover
 
 
 def check_pixels(
@@ -168,8 +193,8 @@ def check_pixels(
     return Pixels(
         depth,
         _check_bits("shadow", shadow, depth.shape, num_lights),
-        _check_optional("facing", facing, depth.shape, num_lights),
-        _check_optional("mapped", mapped, depth.shape, num_lights),
+        check_optional_bits("facing", facing, depth.shape, num_lights),
+        check_optional_bits("mapped", mapped, depth.shape, num_lights),
     )
 
 
@@ -180,7 +205,7 @@ def _check_bits(field: str, values: Any, size: Tuple[int, ...], num_lights: int)
     return Bits(field, None, list(_check_planes(field, values, size, num_lights)))
 
 
-def _check_optional(
+def check_optional_bits(
     field: str, values: Any, size: Tuple[int, ...], num_lights: int
 ) -> Optional[Bits]:
     if not isinstance(values, (list, tuple)):
@@ -258,7 +283,7 @@ def _contiguous(array: NDArray[Any]) -> NDArray[Any]:
     return numpy.ascontiguousarray(array, dtype=array.dtype.newbyteorder("<"))
 
 
-def _pieces(array: NDArray[Any]) -> Iterator[bytes]:
+def pieces(array: NDArray[Any]) -> Iterator[bytes]:
     view = array.reshape(-1).view(numpy.uint8).data
     for begin in range(0, len(view), CHUNK_BYTES):
         yield bytes(view[begin : begin + CHUNK_BYTES])

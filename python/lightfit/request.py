@@ -9,6 +9,7 @@ from typing import Any, Dict, Iterable, Mapping, Optional, Sequence, Tuple, Unio
 
 from numpy.typing import ArrayLike
 
+from lightfit.cover import FineCover, check_cover
 from lightfit.errors import InvalidArgumentError
 from lightfit.inputs import (
     AnyCamera,
@@ -59,9 +60,11 @@ def readback_parts(
     source: str = "",
     facing: Any = None,
     mapped: Any = None,
+    cover: Optional[FineCover] = None,
 ) -> ReadbackParts:
     messages = light_messages(lights)
     pixels = check_pixels(depth, shadow, len(messages), facing, mapped)
+    pixels = dataclasses.replace(pixels, cover=check_cover(cover, len(messages)))
     header = pixels.header()
     header.camera.CopyFrom(camera_message(camera, pixels.width, pixels.height))
     header.source = source

@@ -25,12 +25,14 @@
 #include "calls/allocate_call.h"
 #include "calls/call_context.h"
 #include "calls/evaluate_call.h"
+#include "calls/fine_cover_buffer.h"
 #include "calls/fit_call.h"
 #include "calls/pixel_buffer.h"
 #include "calls/request_lights.h"
 #include "calls/summary_call.h"
 #include "calls/track_session.h"
 #include "io/camera_convention.h"
+#include "io/fine_cover_exr.h"
 #include "io/readback_exr.h"
 #include "lightfit/v1/camera.pb.h"
 #include "lightfit/v1/light.pb.h"
@@ -98,19 +100,46 @@ absl::Span<const uint32_t> SpanOf(const std::optional<BitsArray>& array) {
   return array.has_value() ? SpanOf(*array) : absl::Span<const uint32_t>();
 }
 
-// Refers to the arrays.
-absl::StatusOr<Readback> ReadbackOfArrays(const v1::Readback& proto,
-                                          int num_lights,
-                                          const DepthArray& depth,
-                                          const BitsArray& shadow_bits,
-                                          const std::optional<BitsArray>& facing_bits,
-                                          const std::optional<BitsArray>& mapped_bits) {
-  const absl::StatusOr<ReadbackHeader> header =
-      ReadbackHeaderFromProto(proto, num_lights, ContextOf({}).limits);
-  if (!header.ok()) return header.status();
-  return ReadbackOf(
-      *header, SpanOf(depth), SpanOf(shadow_bits), SpanOf(facing_bits), SpanOf(mapped_bits));
-}
+// A read-back of arrays, which it refers to, and of the finer cover in its message.
+class ArrayReadback {
+ public:
+  ArrayReadback(const v1::Readback& proto,
+                int num_lights,
+                const DepthArray& depth,
+                const BitsArray& shadow_bits,
+                const std::optional<BitsArray>& facing_bits,
+                const std::optional<BitsArray>& mapped_bits) {
+    const absl::StatusOr<ReadbackHeader> header =
+        ReadbackHeaderFromProto(proto, num_lights, ContextOf({}).limits);
+    if (!header.ok()) {
+      view_ = header.status();
+      return;
+    }
+    view_ = ReadbackOf(
+        *header, SpanOf(depth), SpanOf(shadow_bits), SpanOf(facing_bits), SpanOf(mapped_bits));
+    if (header->fine.is_absent()) return;
+    buffer_.emplace(header->fine);
+    absl::Status status = buffer_->Append(proto.fine_cover());
+    if (status.ok()) status = buffer_->CheckComplete();
+    if (!status.ok()) {
+      view_ = status;
+      return;
+    }
+    fine_cover_ = buffer_->View();
+    view_->fine_cover = &fine_cover_;
+  }
+
+  // The view refers to this object.
+  ArrayReadback(const ArrayReadback&) = delete;
+  ArrayReadback& operator=(const ArrayReadback&) = delete;
+
+  const absl::StatusOr<Readback>& view() const { return view_; }
+
+ private:
+  std::optional<FineCoverBuffer> buffer_;
+  FineCover fine_cover_;
+  absl::StatusOr<Readback> view_ = absl::UnknownError("not read");
+};
 
 py::bytes Fit(const std::string& request_bytes,
               const DepthArray& depth,
@@ -119,11 +148,12 @@ py::bytes Fit(const std::string& request_bytes,
               const std::optional<BitsArray>& mapped_bits,
               std::optional<double> timeout_s) {
   const auto request = Parsed<v1::FitRequest>(request_bytes);
-  const absl::StatusOr<Readback> readback = ReadbackOfArrays(
+  const ArrayReadback readback(
       request.readback(), request.lights_size(), depth, shadow_bits, facing_bits, mapped_bits);
-  if (!readback.ok()) Raise(readback.status());
-  return Answer(timeout_s,
-                [&](const CallContext& context) { return AnswerFit(request, *readback, context); });
+  if (!readback.view().ok()) Raise(readback.view().status());
+  return Answer(timeout_s, [&](const CallContext& context) {
+    return AnswerFit(request, *readback.view(), context);
+  });
 }
 
 // Calls whose request holds all there is.
@@ -158,11 +188,11 @@ class TrackedSequence {
                    const std::optional<BitsArray>& mapped_bits,
                    std::optional<double> timeout_s) {
     const auto frame = Parsed<v1::TrackFrame>(frame_bytes);
-    const absl::StatusOr<Readback> readback = ReadbackOfArrays(
+    const ArrayReadback readback(
         frame.readback(), frame.lights_size(), depth, shadow_bits, facing_bits, mapped_bits);
     auto [answer, is_late] = RunStoppable(timeout_s, [&](const std::stop_token& stop) {
       const std::lock_guard<std::mutex> lock(mutex_);
-      return session_.Update(frame, readback, stop);
+      return session_.Update(frame, readback.view(), stop);
     });
     if (is_late && answer.status().code() == static_cast<int>(absl::StatusCode::kCancelled)) {
       Raise(Late(*timeout_s));
@@ -233,23 +263,29 @@ absl::StatusOr<ReadbackExrOptions> ExrOptionsOf(const py::dict& fields) {
   return options;
 }
 
+absl::StatusOr<std::vector<Light>> LightsOfList(const std::string& lights_bytes) {
+  const absl::StatusOr<std::vector<RequestLight>> requested =
+      LightsOfRequest(Parsed<v1::LightList>(lights_bytes).lights());
+  if (!requested.ok()) return requested.status();
+  std::vector<Light> lights;
+  for (const RequestLight& light : *requested) lights.push_back(light.light);
+  return lights;
+}
+
 // (depth, shadow bits, (facing bits, lights), (mapped bits, lights), lightfit.v1.Camera, [(code,
 // message) of each light]); of the lights 0 where there are no bits.
 py::tuple ReadExr(const std::string& path,
                   const std::string& lights_bytes,
                   const py::dict& fields) {
-  const absl::StatusOr<std::vector<RequestLight>> requested =
-      LightsOfRequest(Parsed<v1::LightList>(lights_bytes).lights());
-  if (!requested.ok()) Raise(requested.status());
-  std::vector<Light> lights;
-  for (const RequestLight& light : *requested) lights.push_back(light.light);
+  const absl::StatusOr<std::vector<Light>> lights = LightsOfList(lights_bytes);
+  if (!lights.ok()) Raise(lights.status());
   const absl::StatusOr<ReadbackExrOptions> options = ExrOptionsOf(fields);
   if (!options.ok()) Raise(options.status());
 
   absl::StatusOr<ReadbackFile> file;
   {
     const py::gil_scoped_release others_run;
-    file = ReadReadbackExr(path, lights, *options);
+    file = ReadReadbackExr(path, *lights, *options);
   }
   if (!file.ok()) Raise(file.status());
   py::list statuses;
@@ -271,6 +307,35 @@ py::tuple ReadExr(const std::string& path,
       statuses);
 }
 
+// (depth, shadow bits, (lit bits, lights)) of the read-back whose lightfit.v1.Camera that is; of
+// the lights 0 where there are no bits.
+py::tuple ReadCoverExr(const std::string& path,
+                       const std::string& lights_bytes,
+                       const py::dict& fields,
+                       const std::string& camera_bytes) {
+  const absl::StatusOr<std::vector<Light>> lights = LightsOfList(lights_bytes);
+  if (!lights.ok()) Raise(lights.status());
+  const absl::StatusOr<ReadbackExrOptions> options = ExrOptionsOf(fields);
+  if (!options.ok()) Raise(options.status());
+  const absl::StatusOr<StatedCamera> camera = CameraFromProto(Parsed<v1::Camera>(camera_bytes));
+  if (!camera.ok()) Raise(camera.status());
+  ReadbackFile readback;
+  readback.camera = camera->camera;
+  readback.depth_kind = camera->depth_kind.value_or(DepthKind::kCameraZ);
+
+  absl::StatusOr<FineCoverFile> file;
+  {
+    const py::gil_scoped_release others_run;
+    file = ReadFineCoverExr(path, *lights, *options, readback);
+  }
+  if (!file.ok()) Raise(file.status());
+  py::object lit = py::none();
+  if (!file->lit_bits.empty()) lit = ArrayOf(std::move(file->lit_bits), file->columns, file->rows);
+  return py::make_tuple(ArrayOf(std::move(file->depth), file->columns, file->rows),
+                        ArrayOf(std::move(file->shadow_bits), file->columns, file->rows),
+                        py::make_tuple(lit, file->lit_lights));
+}
+
 }  // namespace
 
 PYBIND11_MODULE(_native, module) {
@@ -278,6 +343,7 @@ PYBIND11_MODULE(_native, module) {
   module.def("fit", &Fit);
   module.def("call", &Call);
   module.def("read_exr", &ReadExr);
+  module.def("read_cover_exr", &ReadCoverExr);
   py::class_<TrackedSequence>(module, "Track")
       .def(py::init<std::string>())
       .def("update", &TrackedSequence::Update);

@@ -144,6 +144,42 @@ TEST(FitCall, RefusesWhatCannotBeAnswered) {
   });
 }
 
+// What lies outside of the pixels' shadow has room, as in the library.
+TEST(FitCall, TakesAFinerCover) {
+  testing::PlaneReadback floor = testing::FloorReadback();
+  floor.Cast(0, [](int x, int y) { return x > 12 && x < 25 && y > 8 && y < 20; });
+  testing::PlaneReadback fine =
+      testing::FloorReadback(testing::FloorCamera(3 * floor.camera.width, 3 * floor.camera.height));
+  fine.Cast(0, [](int x, int y) { return x > 30 && x < 95 && y > 21 && y < 60; });
+  FineCover cover;
+  cover.columns = fine.camera.width;
+  cover.rows = fine.camera.height;
+  cover.nearest = fine.depth;
+  cover.shadow_bits = fine.shadow_bits;
+  const std::vector<Light> lights = {Light::Point("lamp", {1.0, 2.0, 5.0}, 0)};
+  Readback readback = floor.View();
+  const absl::StatusOr<LightMatrix> without = FitLight(readback, lights[0], kMap, FitOptions());
+  readback.fine_cover = &cover;
+  const absl::StatusOr<LightMatrix> want = FitLight(readback, lights[0], kMap, FitOptions());
+  ASSERT_THAT(want, testing::IsOk());
+  v1::FitRequest request = WithMap(testing::RequestOf<v1::FitRequest>(readback, lights));
+  *request.mutable_readback()->mutable_fine_cover() = testing::FineCoverMessage(cover);
+  auto result = AnswerFit(request, CallContext());
+  ASSERT_THAT(result, testing::IsOk());
+  EXPECT_EQ(*MatrixFromProto(result->lights(0).map_from_world(), "m"), want->map_from_world);
+  EXPECT_NE(want->map_from_world, without->map_from_world);
+  request.mutable_options()->set_use_fine_cover(false);
+  result = AnswerFit(request, CallContext());
+  ASSERT_THAT(result, testing::IsOk());
+  EXPECT_EQ(*MatrixFromProto(result->lights(0).map_from_world(), "m"), without->map_from_world);
+
+  request.clear_map();
+  request.mutable_plan_options();
+  const absl::Status status = AnswerFit(request, CallContext()).status();
+  EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(std::string(status.message()), HasSubstr("fine_cover: plans do not look at it yet"));
+}
+
 TEST(FitCall, StopsWhenToldTo) {
   v1::FitRequest request = YardRequest();
   *request.mutable_options() = FitOptionsToProto(FitOptions::AsPublished());

@@ -29,6 +29,21 @@
 
 namespace lightfit::testing {
 
+inline v1::FineCover FineCoverMessage(const FineCover& cover) {
+  const auto bytes = [](const auto& values) {
+    return std::string(reinterpret_cast<const char*>(values.data()), 4 * values.size());
+  };
+  v1::FineCover proto;
+  proto.set_columns(cover.columns);
+  proto.set_rows(cover.rows);
+  proto.set_nearest(bytes(cover.nearest));
+  proto.set_furthest(bytes(cover.furthest));
+  proto.set_shadow_bits(bytes(cover.shadow_bits));
+  proto.set_lit_bits(bytes(cover.lit_bits));
+  if (!cover.lit_bits.empty()) proto.set_lit_lights(cover.lit_lights);
+  return proto;
+}
+
 inline v1::Readback ReadbackMessage(const Readback& readback) {
   v1::Readback proto;
   *proto.mutable_camera() = CameraToProto(readback.camera, readback.depth_kind);

@@ -2,12 +2,15 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <utility>
 
 #include "base/scratch.h"
 #include "partition/fit_plan.h"
+#include "partition/tracking/async_planner.h"
 #include "partition/tracking/plan_tracker.h"
 #include "tests/partition/tracking/plan_walk.h"
 #include "tests/testing/allocation_counter.h"
+#include "tests/testing/frame_loop.h"
 #include "tests/testing/test_scene.h"
 
 namespace lightfit {
@@ -73,6 +76,34 @@ TEST(PlanTracker, AllocatesNothingFromAWarmPoolWhileMapsAreKept) {
     }
   }
   EXPECT_GT(num_kept, 5);
+}
+
+// Under a camera that stands still, as above.
+TEST(AsyncPlanner, AllocatesNothingAfterTheFirstFramesWhileMapsAreKept) {
+  const testing::BoxWalk walk(/*seed=*/21, /*num_lights=*/2, /*num_views=*/1, 48, 48);
+  PlanTrackerOptions options = PlanTrackerOptions::ForStability(0.5);
+  options.plan.max_maps = 3;
+  options.plan.texels = 40'000;
+  options.plan.choose_by_forecast = false;
+  AsyncPlanner planner = std::move(AsyncPlanner::Start(options).value());
+  int64_t frame = 0, num_failed = 0;
+  const auto run = [&] {
+    for (int i = 0; i < 24; ++i, ++frame) {
+      testing::Fill(walk.views[0], walk.lights, frame, &planner.Lend());
+      planner.Submit();
+      testing::WaitUntilIdle(planner);
+      const FramePlans* plans = planner.Poll();
+      if (plans == nullptr) continue;
+      for (const Light& light : walk.lights) {
+        num_failed += plans->Find(light.name)->status.ok() ? 0 : 1;
+      }
+    }
+  };
+  run();
+  const int64_t before = NumAllocations();
+  run();
+  EXPECT_EQ(NumAllocations() - before, 0);
+  EXPECT_EQ(num_failed, 0);
 }
 
 }  // namespace

@@ -47,13 +47,24 @@ inline void Fill(const SyntheticReadback& view,
   readback->map = {1024, 1024};
 }
 
+// The same view with more pixels.
+inline void FillFineCover(const SyntheticReadback& fine, FrameReadback* readback) {
+  FrameFineCover& cover = readback->fine_cover;
+  cover.columns = fine.camera.width;
+  cover.rows = fine.camera.height;
+  cover.nearest.assign(fine.depth.begin(), fine.depth.end());
+  cover.furthest.assign(fine.depth.begin(), fine.depth.end());
+  cover.shadow_bits.assign(fine.shadow_bits.begin(), fine.shadow_bits.end());
+}
+
 // Ends the program when it cannot start.
 inline AsyncOptimizer StartOptimizer(const TrackerOptions& options = {}) {
   return std::move(AsyncOptimizer::Start(options).value());
 }
 
-// Until every frame is done or skipped.
-inline void WaitUntilIdle(const AsyncOptimizer& optimizer) {
+// Until every frame is done or skipped. Here and below: of an AsyncOptimizer or AsyncPlanner.
+template <typename Optimizer>
+void WaitUntilIdle(const Optimizer& optimizer) {
   while (true) {
     const AsyncOptimizer::Counts counts = optimizer.counts();
     if (counts.done + counts.skipped == counts.submitted) return;
@@ -63,9 +74,10 @@ inline void WaitUntilIdle(const AsyncOptimizer& optimizer) {
 
 // After WaitUntilIdle(): the matrices of the last frame. They are counted an instant before they
 // can be polled.
-inline const FrameMatrices& PollLast(AsyncOptimizer& optimizer, int64_t frame) {
+template <typename Optimizer>
+const auto& PollLast(Optimizer& optimizer, int64_t frame) {
   while (true) {
-    const FrameMatrices* matrices = optimizer.Poll();
+    const auto* matrices = optimizer.Poll();
     if (matrices != nullptr && matrices->frame == frame) return *matrices;
     std::this_thread::yield();
   }

@@ -18,6 +18,7 @@ using testing::WaitUntilIdle;
 
 TEST(AsyncAllocation, NothingIsAllocatedAfterTheFirstFrames) {
   const BoxWalk walk(/*seed=*/21, /*num_lights=*/8, /*num_views=*/4, 48, 48);
+  const BoxWalk fine(/*seed=*/21, /*num_lights=*/8, /*num_views=*/4, 96, 96);
   AsyncOptimizer optimizer = StartOptimizer();
   int64_t frame = 0, num_polled = 0, num_failed = 0;
   // Waits for every frame, so that all buffers get their turn, then hurries, so that some are
@@ -25,6 +26,7 @@ TEST(AsyncAllocation, NothingIsAllocatedAfterTheFirstFrames) {
   const auto run = [&](int num_frames, bool waits) {
     for (int i = 0; i < num_frames; ++i, ++frame) {
       Fill(walk.views[frame % 4], walk.lights, frame, &optimizer.Lend());
+      testing::FillFineCover(fine.views[frame % 4], &optimizer.Lend());
       if (!optimizer.SetOptions({}).ok()) ++num_failed;
       optimizer.Submit();
       if (waits) WaitUntilIdle(optimizer);

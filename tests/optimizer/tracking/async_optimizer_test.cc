@@ -98,6 +98,43 @@ TEST(AsyncOptimizer, MatricesAreThoseOfTheTrackerWhateverChangesBetweenFrames) {
   }
 }
 
+// The same views with more pixels, in some of the frames.
+TEST(AsyncOptimizer, AFinerCoverHasRoomAsInTheTracker) {
+  constexpr uint64_t kSeed = 4;
+  SCOPED_TRACE(kSeed);
+  const BoxWalk walk(kSeed, /*num_lights=*/3, /*num_views=*/4, 32, 24);
+  const BoxWalk fine(kSeed, /*num_lights=*/3, /*num_views=*/4, 128, 96);
+  AsyncOptimizer optimizer = StartOptimizer();
+  Tracker tracker{TrackerOptions()}, without{TrackerOptions()};
+  int num_changed = 0;
+  for (int64_t frame = 0; frame < 4; ++frame) {
+    SCOPED_TRACE(frame);
+    FrameReadback& readback = optimizer.Lend();
+    Fill(walk.views[frame], walk.lights, frame, &readback);
+    readback.fine_cover = FrameFineCover();
+    if (frame != 2) testing::FillFineCover(fine.views[frame], &readback);
+    FineCover cover;
+    const auto expected = tracker.Update(readback.View(&cover), walk.lights, readback.map);
+    const auto coarse = without.Update(readback.View(), walk.lights, readback.map);
+    optimizer.Submit();
+    const FrameMatrices& matrices = PollLast(optimizer, frame);
+    for (size_t i = 0; i < walk.lights.size(); ++i) {
+      ExpectSame(matrices.lights[i], expected[i]);
+      if (!expected[i].ok() || !coarse[i].ok()) continue;
+      num_changed +=
+          SameBytes(expected[i]->matrix.map_from_world, coarse[i]->matrix.map_from_world) ? 0 : 1;
+    }
+  }
+  EXPECT_GT(num_changed, 0);
+  FrameReadback& readback = optimizer.Lend();
+  Fill(walk.views[0], walk.lights, 9, &readback);
+  testing::FillFineCover(fine.views[0], &readback);
+  readback.fine_cover.nearest.pop_back();
+  optimizer.Submit();
+  EXPECT_THAT(PollLast(optimizer, 9).lights[0].status,
+              StatusIs(kInvalid, HasSubstr("readback.fine_cover.nearest")));
+}
+
 TEST(AsyncOptimizer, LightThatVanishedComesBackAsNew) {
   const BoxWalk walk(/*seed=*/5, /*num_lights=*/2, /*num_views=*/1, 64, 64);
   AsyncOptimizer optimizer = StartOptimizer(TrackerOptions::ForStability(1.0));
