@@ -18,7 +18,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -32,22 +31,18 @@
 #include "base/text_file.h"
 #include "bench/scene_set.h"
 #include "jobs/compare/stage.h"
+#include "jobs/schemes/fitted.h"
+#include "jobs/schemes/judge_maps.h"
+#include "jobs/schemes/shipped.h"
 #include "methods/view_body.h"
 #include "optimizer/light_view.h"
-#include "optimizer/readback/samples.h"
-#include "partition/fit_plan.h"
-#include "partition/shipped/cube_faces.h"
-#include "partition/shipped/paraboloid.h"
-#include "partition/shipped/paraboloid_plane.h"
 #include "render/clearance.h"
 #include "render/generator/dice.h"
-#include "render/judge_plan.h"
-#include "render/shipped/judge_rays.h"
 
 namespace lightfit {
 namespace {
 
-constexpr int64_t kTexels = int64_t{400} * 400;
+constexpr int kSide = 400;  // of a single map of as many texels as all maps have
 constexpr int kReadback = 180;
 
 struct Arguments {
@@ -87,13 +82,6 @@ struct LampView {
     options.cover = cover;
     const absl::StatusOr<LightView> view = ViewLight(**surfaces, light, options);
     return view.ok() && view->cover.ok();
-  }
-
-  // In light space, world axes.
-  Samples LightSamples() const {
-    const FacingSource facing = (*surfaces)->readback.FacingOf(light.shadow_bit);
-    return SelectSamples(
-        **surfaces, light, SampleOptions(), Eigen::Matrix3d::Identity(), true, facing);
   }
 };
 
@@ -135,86 +123,45 @@ std::unique_ptr<LampView> DrawLamp(const CompareStage& stage,
   return nullptr;
 }
 
-using Judge = std::function<absl::StatusOr<ShadowImage>(
-    const LampView& lamp, const std::vector<Lighting>& truth, const JudgeOptions& options)>;
-struct Row {
-  std::string name;
-  Judge judge;
-};
+constexpr SchemeBudget kBudget = {{kSide, kSide}};
 
-Row RowOfPlan(const std::string& name,
-              const std::function<absl::StatusOr<Plan>(const LampView& lamp)>& make) {
-  return {name,
-          [make](const LampView& lamp,
-                 const std::vector<Lighting>& truth,
-                 const JudgeOptions& options) -> absl::StatusOr<ShadowImage> {
-            const absl::StatusOr<Plan> plan = make(lamp);
-            if (!plan.ok()) return plan.status();
-            if (NumTexels(*plan) > kTexels) return absl::InternalError("too many texels");
-            return JudgePlan(
-                *lamp.stage.caster, lamp.stage.screen, truth, lamp.light, *plan, options);
-          }};
+Scheme CubeRow(const std::string& name, bool needed_faces_only, bool turned) {
+  CubeFacesOptions options;
+  options.needed_faces_only = needed_faces_only;
+  options.turned = turned;
+  return CubeScheme(name, options, kBudget);
 }
 
-Row RowOfCube(const std::string& name, bool needed_faces_only, bool turned) {
-  return RowOfPlan(name, [needed_faces_only, turned](const LampView& lamp) {
-    CubeFacesOptions options;
-    options.needed_faces_only = needed_faces_only;
-    options.turned = turned;
-    return CubeFaces(**lamp.surfaces, lamp.light, lamp.LightSamples(), kTexels, options);
-  });
-}
-
-Row RowOfFit(const std::string& name, int num_maps, Cover cover, bool choose_by_forecast) {
+Scheme FitRow(const std::string& name, int num_maps, Cover cover, bool choose_by_forecast) {
   PlanOptions options;
   options.max_maps = num_maps;
-  options.texels = kTexels;
+  options.texels = kBudget.texels();
   options.choose_by_forecast = choose_by_forecast;
   options.fit.cover = cover;
-  return RowOfPlan(name, [options](const LampView& lamp) -> absl::StatusOr<Plan> {
-    const absl::StatusOr<LightPlan> plan = FitPlan(**lamp.surfaces, lamp.light, options);
-    if (!plan.ok()) return plan.status();
-    return PlanOf(*plan);
-  });
+  return FittedScheme(name, options);
 }
 
-// Without a normal the plane is free.
-Row RowOfPair(const std::string& name, const std::optional<Eigen::Vector3d>& normal, bool drawn) {
-  return {name,
-          [normal, drawn](const LampView& lamp,
-                          const std::vector<Lighting>& truth,
-                          const JudgeOptions& options) -> absl::StatusOr<ShadowImage> {
-            const Eigen::Vector3d axis =
-                normal.has_value()
-                    ? *normal
-                    : BestParaboloidPlane(DirectionSamples(lamp.light, lamp.LightSamples())).normal;
-            const absl::StatusOr<ParaboloidPair> pair =
-                MakeParaboloidPair(lamp.light, axis, kTexels);
-            if (!pair.ok()) return pair.status();
-            const CompareStage& stage = lamp.stage;
-            return drawn ? JudgeDrawnParaboloids(
-                               *stage.caster, stage.screen, truth, lamp.light, *pair, options)
-                         : JudgeParaboloids(
-                               *stage.caster, stage.screen, truth, lamp.light, *pair, options);
-          }};
+Scheme PairRow(const std::string& name, const std::optional<Eigen::Vector3d>& normal) {
+  return PairScheme(name, normal, PairFill::kByRays, kBudget);
 }
 
-std::vector<Row> MakeRows() {
-  std::vector<Row> rows = {RowOfCube("cube, all faces", false, false),
-                           RowOfCube("cube, needed faces", true, false),
-                           RowOfCube("cube, turned", true, true),
-                           RowOfPair("pair, normal x", Eigen::Vector3d::UnitX(), false),
-                           RowOfPair("pair, normal y (up)", Eigen::Vector3d::UnitY(), false),
-                           RowOfPair("pair, normal z", Eigen::Vector3d::UnitZ(), false),
-                           RowOfPair("pair, free", std::nullopt, false),
-                           RowOfPair("pair, free, drawn", std::nullopt, true)};
+std::vector<Scheme> MakeRows() {
+  std::vector<Scheme> rows = {
+      CubeRow("cube, all faces", false, false),
+      CubeRow("cube, needed faces", true, false),
+      CubeRow("cube, turned", true, true),
+      PairRow("pair, normal x", Eigen::Vector3d::UnitX()),
+      PairRow("pair, normal y (up)", Eigen::Vector3d::UnitY()),
+      PairRow("pair, normal z", Eigen::Vector3d::UnitZ()),
+      PairRow("pair, free", std::nullopt),
+      PairScheme("pair, free, drawn", std::nullopt, PairFill::kByRaster, kBudget)};
   for (const bool forecast : {false, true}) {
     const std::string chosen = forecast ? ", chosen" : "";
     for (const int num_maps : {2, 3, 4, 6}) {
-      rows.push_back(RowOfFit(
+      rows.push_back(FitRow(
           absl::StrCat(num_maps, " maps, dark", chosen), num_maps, Cover::kShadowed, forecast));
     }
-    rows.push_back(RowOfFit(absl::StrCat("6 maps, all", chosen), 6, Cover::kReceivers, forecast));
+    rows.push_back(FitRow(absl::StrCat("6 maps, all", chosen), 6, Cover::kReceivers, forecast));
   }
   return rows;
 }
@@ -230,17 +177,28 @@ struct LampRow {
   std::vector<Measured> rows;
 };
 
+absl::StatusOr<ShadowImage> JudgeRow(const Scheme& row,
+                                     const LampView& lamp,
+                                     const std::vector<Lighting>& truth,
+                                     const JudgeOptions& options) {
+  const CompareStage& stage = lamp.stage;
+  const absl::StatusOr<SchemeMaps> maps = row.set_up({stage.view, *lamp.surfaces, lamp.light});
+  if (!maps.ok()) return maps.status();
+  if (NumTexels(*maps) > kBudget.texels()) return absl::InternalError("too many texels");
+  return JudgeMaps(*stage.caster, stage.screen, truth, lamp.light, *maps, options);
+}
+
 LampRow MeasureLamp(const std::string& scene,
                     const LampView& lamp,
-                    const std::vector<Row>& rows,
+                    const std::vector<Scheme>& rows,
                     int phases) {
   LampRow measured = {scene, lamp.light.name, lamp.HasSingleMap(Cover::kShadowed), {}};
   const std::vector<Lighting> truth =
       TrueLighting(*lamp.stage.caster, lamp.stage.screen, lamp.light);
   JudgeOptions options;
   options.phases = phases;
-  for (const Row& row : rows) {
-    const absl::StatusOr<ShadowImage> image = row.judge(lamp, truth, options);
+  for (const Scheme& row : rows) {
+    const absl::StatusOr<ShadowImage> image = JudgeRow(row, lamp, truth, options);
     measured.rows.emplace_back();
     Measured& result = measured.rows.back();
     result.is_there = image.ok();
@@ -257,7 +215,7 @@ LampRow MeasureLamp(const std::string& scene,
 
 absl::Status MeasureScene(size_t index,
                           const Arguments& arguments,
-                          const std::vector<Row>& rows,
+                          const std::vector<Scheme>& rows,
                           Progress& progress,
                           std::vector<LampRow>* lamps) {
   const SceneCase& scene = SceneCases()[index];
@@ -310,12 +268,12 @@ Ratio RatioOf(const Lamps& lamps, size_t row, size_t reference, double Measured:
   return ratio;
 }
 
-size_t IndexOf(const std::vector<Row>& rows, const std::string& name) {
-  const auto is_it = [&name](const Row& row) { return row.name == name; };
+size_t IndexOf(const std::vector<Scheme>& rows, const std::string& name) {
+  const auto is_it = [&name](const Scheme& row) { return row.name == name; };
   return std::find_if(rows.begin(), rows.end(), is_it) - rows.begin();
 }
 
-void PrintRatios(const std::string& title, const std::vector<Row>& rows, const Lamps& lamps) {
+void PrintRatios(const std::string& title, const std::vector<Scheme>& rows, const Lamps& lamps) {
   if (lamps.empty()) return;
   std::printf("\n== %s: %d lamps\n", title.c_str(), static_cast<int>(lamps.size()));
   std::printf(
@@ -345,7 +303,7 @@ struct Target {
   double at_most, aim;
 };
 
-void PrintTargets(const std::vector<Row>& rows, const Lamps& lamps) {
+void PrintTargets(const std::vector<Scheme>& rows, const Lamps& lamps) {
   const std::string faces = "cube, needed faces";
   std::printf("\n== ideal bias: total, mean, and what is wanted of both\n");
   for (const Target& target : {Target{"4 maps, dark", faces, 0.33, 0.20},
@@ -369,7 +327,7 @@ void PrintTargets(const std::vector<Row>& rows, const Lamps& lamps) {
   }
 }
 
-void PrintMissing(const std::vector<Row>& rows, const std::vector<LampRow>& lamps) {
+void PrintMissing(const std::vector<Scheme>& rows, const std::vector<LampRow>& lamps) {
   std::string missing;
   for (const LampRow& lamp : lamps) {
     for (size_t row = 0; row < rows.size(); ++row) {
@@ -381,7 +339,7 @@ void PrintMissing(const std::vector<Row>& rows, const std::vector<LampRow>& lamp
   if (!missing.empty()) std::printf("\n== not there\n%s", missing.c_str());
 }
 
-void Print(const std::vector<Row>& rows, const std::vector<LampRow>& lamps) {
+void Print(const std::vector<Scheme>& rows, const std::vector<LampRow>& lamps) {
   Lamps all, without_single;
   for (size_t begin = 0; begin < lamps.size();) {
     Lamps of_scene;
@@ -401,7 +359,7 @@ void Print(const std::vector<Row>& rows, const std::vector<LampRow>& lamps) {
 }
 
 absl::Status WriteCsv(const std::string& path,
-                      const std::vector<Row>& rows,
+                      const std::vector<Scheme>& rows,
                       const std::vector<LampRow>& lamps) {
   std::string text = "scene,lamp,has_single_map,row,ideal,practical,outside\n";
   for (const LampRow& lamp : lamps) {
@@ -429,7 +387,7 @@ absl::Status Run(const Arguments& arguments) {
     return absl::InvalidArgumentError(
         absl::StrFormat("--only %s: no such scene; there are%s", arguments.only, names));
   }
-  const std::vector<Row> rows = MakeRows();
+  const std::vector<Scheme> rows = MakeRows();
   std::vector<LampRow> lamps;
   {
     Progress progress(arguments.num_lamps * static_cast<int>(SceneCases().size()));

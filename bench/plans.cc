@@ -8,6 +8,9 @@
 //       more; the same over other rows; time in fits of one map. --csv: per light and row, all of
 //       it.
 //
+// Virtual pages have a row at these texels and one at 2048 x 2048; pages, cubes and paraboloids are
+// over the lights that they are for.
+//
 // The tables of docs/plans.md.
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -26,9 +29,9 @@
 #include "bench/plan_rows.h"
 #include "bench/scene_set.h"
 #include "jobs/compare/stage.h"
+#include "jobs/schemes/judge_maps.h"
 #include "optimizer/figures/foretell.h"
 #include "optimizer/readback/surfaces.h"
-#include "render/judge_plan.h"
 #include "render/plan_costs.h"
 #include "render/true_lighting.h"
 
@@ -52,9 +55,11 @@ struct Measured {
   bool is_there = false;
   double ideal = 0.0, practical = 0.0, outside = 0.0;
   double seconds = 0.0;
-  double overlap = 0.0, draws = 0.0;  // maps that hold a receiver; draws for each caster
-  double foretold = 0.0;              // wrong pixels
   int num_maps = 0;
+
+  // Of matrices: maps that hold a receiver, draws for each caster; wrong pixels foretold.
+  bool is_plan = false;
+  double overlap = 0.0, draws = 0.0, foretold = 0.0;
 };
 
 struct LightRow {
@@ -99,54 +104,61 @@ class LightBench {
     const absl::StatusOr<Surfaces> large = FindSurfaces(large_view_.readback, 1, {});
     if (!large.ok()) return large.status();
     std::vector<Measured> measured;
+    measured.reserve(rows.size());
     for (const PlanRow& row : rows) {
-      measured.push_back(MeasureRow(row, {stage_.view, *small, *large, light_}));
+      measured.push_back(MeasureRow(row, {stage_.view, row.from_large ? large : small, light_}));
     }
     if (!measured.front().is_there) return absl::NotFoundError("no single map");
     return measured;
   }
 
  private:
-  Measured MeasureRow(const PlanRow& row, const PlanInputs& inputs) const {
+  Measured MeasureRow(const PlanRow& row, const SchemeInput& input) const {
     Measured best;
-    for (const auto& make : row.make) {
-      const Measured measured = MeasurePlan(row, make, inputs);
+    for (const Scheme& scheme : row.schemes) {
+      const Measured measured = MeasureScheme(row, scheme, input);
       if (measured.is_there && (!best.is_there || measured.ideal < best.ideal)) best = measured;
     }
     return best;
   }
 
-  Measured MeasurePlan(const PlanRow& row,
-                       const PlanRow::Make& make,
-                       const PlanInputs& inputs) const {
+  Measured MeasureScheme(const PlanRow& row, const Scheme& scheme, const SchemeInput& input) const {
     Measured measured;
     const auto begin = std::chrono::steady_clock::now();
-    const absl::StatusOr<Plan> plan = make(inputs);
+    const absl::StatusOr<SchemeMaps> maps = scheme.set_up(input);
     measured.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    if (!plan.ok()) return measured;
+    if (!maps.ok()) return measured;
     JudgeOptions judge;
     judge.phases = arguments_.phases;
     const absl::StatusOr<ShadowImage> image =
-        JudgePlan(*stage_.caster, stage_.screen, truth_, light_, *plan, judge);
+        JudgeMaps(*stage_.caster, stage_.screen, truth_, light_, *maps, judge);
     if (!image.ok()) return measured;
-    const absl::StatusOr<PlanCosts> costs =
-        MeasurePlanCosts(*stage_.caster, stage_.screen, truth_, light_, *plan);
-    if (!costs.ok()) return measured;
-    measured.is_there = NumTexels(*plan) <= kPlanTexels;
+    const Plan* plan = PlanOf(*maps);
+    if (plan != nullptr && !AddPlan(row, *plan, &measured)) return measured;
+    measured.is_there = NumTexels(*maps) <= row.texels;
     measured.ideal = static_cast<double>(image->wrong.ideal);
     measured.practical = static_cast<double>(image->wrong.practical);
     measured.outside = static_cast<double>(image->wrong.outside);
-    measured.num_maps = static_cast<int>(plan->maps.size());
-    measured.overlap = costs->overlap;
-    measured.draws = costs->draws_per_caster;
+    measured.num_maps = NumMaps(*maps);
+    return measured;
+  }
+
+  // Whether it could be measured.
+  bool AddPlan(const PlanRow& row, const Plan& plan, Measured* measured) const {
+    const absl::StatusOr<PlanCosts> costs =
+        MeasurePlanCosts(*stage_.caster, stage_.screen, truth_, light_, plan);
+    if (!costs.ok()) return false;
+    measured->is_plan = true;
+    measured->overlap = costs->overlap;
+    measured->draws = costs->draws_per_caster;
     std::vector<SizedMatrix> maps;
-    for (const PlanMap& map : plan->maps) maps.push_back({map.map_from_world, map.size});
+    for (const PlanMap& map : plan.maps) maps.push_back({map.map_from_world, map.size});
     constexpr double kPixels = static_cast<double>(kScreenSize) * kScreenSize;
     const Readback& readback = row.from_large ? large_view_.readback : small_view_.readback;
-    measured.foretold =
-        kPixels * ForetellWrongShare(readback, light_, maps, {}, plan->border).value_or(0.0);
-    return measured;
+    measured->foretold =
+        kPixels * ForetellWrongShare(readback, light_, maps, {}, plan.border).value_or(0.0);
+    return true;
   }
 
   const CompareStage& stage_;
@@ -226,11 +238,12 @@ void PrintRatios(const std::string& title, const std::vector<PlanRow>& rows, con
               "time in fits");
   for (size_t row = 0; row < rows.size(); ++row) {
     double seconds = 0.0, seconds_of_one = 0.0, num_maps = 0.0, overlap = 0.0, draws = 0.0;
-    int count = 0;
+    int count = 0, num_plans = 0;
     for (const LightRow* light : lights) {
       const Measured& measured = light->rows[row];
       if (!measured.is_there) continue;
       ++count;
+      num_plans += measured.is_plan ? 1 : 0;
       seconds += measured.seconds;
       seconds_of_one += light->rows[0].seconds;
       num_maps += measured.num_maps;
@@ -238,7 +251,10 @@ void PrintRatios(const std::string& title, const std::vector<PlanRow>& rows, con
       draws += measured.draws;
     }
     if (count == 0) continue;
-    std::printf("%-24s %-16s %-16s %-12s %-12s %-12s %-6.1f %-8.2f %-6.2f %.1f\n",
+    const auto of_plans = [num_plans](double sum) {
+      return num_plans > 0 ? absl::StrFormat("%.2f", sum / num_plans) : "-";
+    };
+    std::printf("%-24s %-16s %-16s %-12s %-12s %-12s %-6.1f %-8s %-6s %.1f\n",
                 rows[row].name.c_str(),
                 RatioText(lights, row, kOneMap, &Measured::ideal, true).c_str(),
                 RatioText(lights, row, kOneMap, &Measured::practical, false).c_str(),
@@ -246,8 +262,8 @@ void PrintRatios(const std::string& title, const std::vector<PlanRow>& rows, con
                 RatioText(lights, row, kAsPublishedMap, &Measured::ideal, false).c_str(),
                 RatioText(lights, row, kZp4, &Measured::ideal, false).c_str(),
                 num_maps / count,
-                overlap / count,
-                draws / count,
+                of_plans(overlap).c_str(),
+                of_plans(draws).c_str(),
                 seconds / seconds_of_one);
   }
 }
@@ -312,8 +328,12 @@ absl::Status WriteCsv(const std::string& path,
     for (size_t row = 0; row < rows.size(); ++row) {
       const Measured& measured = light.rows[row];
       if (!measured.is_there) continue;
+      const std::string of_plan =
+          measured.is_plan
+              ? absl::StrFormat("%g,%g,%g", measured.overlap, measured.draws, measured.foretold)
+              : ",,";
       absl::StrAppendFormat(&text,
-                            "%s,%s,\"%s\",%d,%g,%g,%g,%g,%g,%g,%g\n",
+                            "%s,%s,\"%s\",%d,%g,%g,%g,%s,%g\n",
                             light.scene,
                             light.light,
                             rows[row].name,
@@ -321,9 +341,7 @@ absl::Status WriteCsv(const std::string& path,
                             measured.ideal,
                             measured.practical,
                             measured.outside,
-                            measured.overlap,
-                            measured.draws,
-                            measured.foretold,
+                            of_plan,
                             measured.seconds);
     }
   }

@@ -26,7 +26,7 @@ void WrongPixelTable::Add(const std::string& scene, const LightComparison& compa
   row.scene = scene;
   row.light = comparison.light.name;
   for (const std::string& method : methods_) {
-    const ComparedMap* map = comparison.Find(method);
+    const ComparedRow* map = comparison.Find(method);
     if (map == nullptr || !map->status.ok() || !map->wrong.has_value()) {
       ++num_left_out_;
       return;

@@ -25,7 +25,13 @@ namespace {
 // A bar on stderr while it works.
 absl::StatusOr<AllocationReport> Allocate(const AllocateFlags& flags, const AllocationTask& task) {
   const int num_lights = static_cast<int>(task.lights.size());
-  Progress progress(task.budget_texels.has_value() ? 2 * num_lights : num_lights, flags.fit.quiet);
+  int num_steps = num_lights;
+  if (task.plans.has_value()) {
+    num_steps = 1 + num_lights;
+  } else if (task.budget_texels.has_value()) {
+    num_steps = 2 * num_lights;
+  }
+  Progress progress(num_steps, flags.fit.quiet);
   bool has_begun = false;
   absl::StatusOr<AllocationReport> report =
       AllocateLights(task, [&progress, &has_begun](const std::string& what) {

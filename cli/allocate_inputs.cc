@@ -83,6 +83,7 @@ absl::StatusOr<AllocateInputs> ReadAllocateInputs(const AllocateFlags& flags) {
   task.rules = flags.rules;
   task.budget_texels = flags.budget_texels;
   task.tolerance = flags.tolerance;
+  task.plans = PlanOptionsOf(flags.fit.plan, flags.fit.options);
   if (task.tolerance.has_value()) task.tolerance->image_scale = inputs.image_scale;
   return inputs;
 }

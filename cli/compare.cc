@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,8 +14,10 @@
 #include "base/text_file.h"
 #include "cli/compare_inputs.h"
 #include "cli/exit_code.h"
+#include "cli/reports/compare_csv.h"
 #include "cli/reports/compare_report.h"
 #include "cli/reports/fit_report.h"
+#include "cli/reports/plan_report.h"
 #include "jobs/compare/json.h"
 #include "picture/compare_page.h"
 #include "picture/png.h"
@@ -50,7 +53,7 @@ bool HasNext(const CompareInputs& inputs, size_t light) {
 
 std::vector<LightComparison> CompareAll(const CompareInputs& inputs, bool quiet) {
   const size_t steps_per_row = inputs.next != nullptr ? 2 : 1;
-  const size_t num_steps = RowNames(inputs.options.given).size() * steps_per_row;
+  const size_t num_steps = RowNames(inputs.options).size() * steps_per_row;
   Progress progress(static_cast<int>(inputs.lights.size() * num_steps), quiet);
   CompareOptions options = inputs.options;
   std::vector<LightComparison> comparisons;
@@ -73,16 +76,20 @@ std::vector<LightComparison> CompareAll(const CompareInputs& inputs, bool quiet)
   return comparisons;
 }
 
-// Names the lights without a matrix of ours on stderr and returns how many there are.
-int PrintFailedLights(const std::vector<LightComparison>& comparisons) {
+// Names the lights without a matrix or plan of ours on stderr and returns how many there are.
+int PrintFailedLights(const std::vector<LightComparison>& comparisons, bool has_plans) {
   int num_failed = 0;
   for (const LightComparison& comparison : comparisons) {
     const absl::Status& status = comparison.lightfit().status;
     if (status.ok()) continue;
     ++num_failed;
-    PrintFailedLight("matrix", comparison.light.name, status);
+    PrintFailedLight(has_plans ? "plan" : "matrix", comparison.light.name, status);
   }
   return num_failed;
+}
+
+std::string SizeText(const CompareOptions& options) {
+  return options.plan.has_value() ? PlanSizeText(*options.plan) : MapText(options.map);
 }
 
 CompareHeading HeadingOf(const CompareInputs& inputs) {
@@ -92,9 +99,11 @@ CompareHeading HeadingOf(const CompareInputs& inputs) {
   heading.screen_height = inputs.stage.has_truth() ? inputs.stage.screen.camera.height : 0;
   heading.readback_width = inputs.stage.readback.width();
   heading.readback_height = inputs.stage.readback.height();
-  heading.map = inputs.options.map;
+  heading.maps = SizeText(inputs.options);
   heading.phases = inputs.options.judge.phases;
-  heading.fit = MethodText(inputs.options.fit);
+  const std::optional<PlanOptions>& plan = inputs.options.plan;
+  heading.fit = plan.has_value() ? PlanMethodText(*plan) : MethodText(inputs.options.fit);
+  heading.has_plans = plan.has_value();
   heading.next = inputs.next_title;
   return heading;
 }
@@ -116,8 +125,11 @@ absl::Status WritePicture(const CompareFlags& flags,
   options.keep_images = true;
   options.next = nullptr;
   const LightComparison comparison = CompareMaps(inputs.stage, inputs.lights[light], options);
-  const ComparePictureOptions picture = {
-      inputs.title, options.map, options.judge.phases, flags.picture_bias};
+  const ComparePictureOptions picture = {inputs.title,
+                                         SizeText(options),
+                                         options.plan.has_value(),
+                                         options.judge.phases,
+                                         flags.picture_bias};
   return WritePng(DrawComparePicture(inputs.stage, comparison, picture, typeface),
                   flags.picture_path);
 }
@@ -147,7 +159,9 @@ std::function<int()> DeclareCompare(CLI::App* app) {
 }
 
 int RunCompare(const CompareFlags& flags) {
-  absl::Status status = ValidateFitOptions(flags.fit.options);
+  const std::optional<PlanOptions> plan = PlanOptionsOf(flags.fit.plan, flags.fit.options);
+  absl::Status status =
+      plan.has_value() ? ValidatePlanOptions(*plan) : ValidateFitOptions(flags.fit.options);
   if (!status.ok()) return Fail(kExitUsage, status);
   status = CheckOutputs(flags);
   if (!status.ok()) return Fail(kExitBadInput, status);
@@ -161,7 +175,7 @@ int RunCompare(const CompareFlags& flags) {
     std::fputs(text.c_str(), stdout);
     std::fflush(stdout);
   }
-  const int num_failed = PrintFailedLights(comparisons);
+  const int num_failed = PrintFailedLights(comparisons, plan.has_value());
   status = WriteOutputs(flags, *inputs, comparisons);
   if (!status.ok()) return Fail(kExitBadInput, status);
   return num_failed > 0 ? kExitIncomplete : kExitOk;

@@ -177,8 +177,11 @@ absl::StatusOr<CompareInputs> ReadCompareInputs(const CompareFlags& flags) {
   inputs.options.map = flags.map;
   inputs.options.fit = flags.fit.options;
   inputs.options.judge = flags.judge;
+  const std::optional<PlanOptions> plan = PlanOptionsOf(flags.fit.plan, flags.fit.options);
+  if (plan.has_value()) SetPlan(*plan, &inputs.options);
   for (const MatrixFlag& matrix : flags.matrices) {
-    absl::StatusOr<GivenMatrices> given = ReadGivenMatrices(matrix.name, matrix.path, flags.map);
+    absl::StatusOr<GivenMatrices> given =
+        ReadGivenMatrices(matrix.name, matrix.path, inputs.options.map);
     if (!given.ok()) return given.status();
     inputs.options.given.push_back(*std::move(given));
   }

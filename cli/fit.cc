@@ -101,7 +101,7 @@ FitReport JsonReport(const FitFlags& flags,
   report.camera = file.camera;
   report.depth_kind = file.depth_kind;
   report.options = options;
-  report.plan_options = PlanOptionsOf(flags);
+  report.plan_options = PlanOptionsOf(flags.plan, flags.options);
   report.map = flags.map;
   report.clip = flags.clip;
   for (const FitComparison& comparison : comparisons) {
@@ -140,7 +140,7 @@ Outcome FitAndDraw(const FitFlags& flags, const FitOptions& options, const FitIn
     is_first = false;
     progress.Begin(absl::StrCat("fitting ", light.name));
   };
-  const std::optional<PlanOptions> plan = PlanOptionsOf(flags);
+  const std::optional<PlanOptions> plan = PlanOptionsOf(flags.plan, flags.options);
   const std::vector<absl::Status>& light_status = inputs.file.light_status;
   ComparedReadback compared =
       plan.has_value()
@@ -191,7 +191,7 @@ std::function<int()> DeclareFit(CLI::App* app) {
 int RunFit(const FitFlags& flags) {
   const FitOptions options =
       flags.as_published ? FitOptions::AsPublished(flags.options) : flags.options;
-  const std::optional<PlanOptions> plan = PlanOptionsOf(flags);
+  const std::optional<PlanOptions> plan = PlanOptionsOf(flags.plan, flags.options);
   absl::Status status = plan.has_value() ? ValidatePlanOptions(*plan) : ValidateFitOptions(options);
   if (!status.ok()) return Fail(kExitUsage, status);
   status = CheckOutputs(flags);

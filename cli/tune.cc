@@ -82,7 +82,7 @@ CompareHeading HeadingOf(const CompareInputs& inputs, const TuneOptions& options
   heading.screen_height = inputs.stage.screen.camera.height;
   heading.readback_width = inputs.stage.readback.width();
   heading.readback_height = inputs.stage.readback.height();
-  heading.map = options.map;
+  heading.maps = MapText(options.map);
   heading.fit = MethodText(options.fit);
   return heading;
 }

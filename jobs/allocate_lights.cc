@@ -7,10 +7,12 @@
 #include "absl/strings/str_cat.h"
 #include "geometry/map_size.h"
 #include "jobs/fit_summary.h"
+#include "jobs/matrix_judge.h"
 #include "optimizer/figures/foretell.h"
 #include "optimizer/fit.h"
 #include "optimizer/sizing/allocation.h"
 #include "optimizer/sizing/map_shapes.h"
+#include "partition/fit_plans.h"
 
 namespace lightfit {
 namespace {
@@ -98,6 +100,76 @@ absl::Status SplitBudget(const AllocationTask& task,
   return absl::OkStatus();
 }
 
+// The figures of a light's plan; what a plan of an equal share of the budget would have.
+void AddPlan(const AllocationTask& task,
+             const Surfaces& surfaces,
+             size_t i,
+             absl::StatusOr<LightPlan> plan,
+             size_t num_plans,
+             AllocationReport* report) {
+  LightFit& fit = report->fit.lights.emplace_back();
+  AllocationEntry& entry = report->entries.emplace_back();
+  fit.light = task.lights[i];
+  entry.weight = task.weights[i];
+  if (!plan.ok()) {
+    fit.matrix = plan.status();
+    return;
+  }
+  const absl::StatusOr<MatrixJudge> judge =
+      MatrixJudge::Of(surfaces, task.lights[i], plan->border, task.options);
+  if (!judge.ok()) {
+    fit.matrix = judge.status();
+    return;
+  }
+  const double guard_texels = task.plans->guard_texels;
+  const absl::StatusOr<JudgedPlan> judged = (*judge)(*std::move(plan), guard_texels);
+  if (!judged.ok()) {
+    fit.matrix = judged.status();
+    return;
+  }
+  fit.plan = PlanFit{judged->plan, judged->own_figures, guard_texels};
+  fit.matrix = judged->plan.maps[0];  // the answer where it is the only one
+  fit.wrong_share = judged->own_figures.wrong_share;
+  PlanOptions share = *task.plans;
+  share.texels = *task.budget_texels / static_cast<int64_t>(num_plans);
+  // In the same border, as energies are of the edges that it serves.
+  share.fit.border =
+      judged->plan.border == Border::kDark ? BorderChoice::kDark : BorderChoice::kLit;
+  absl::StatusOr<LightPlan> equal = FitPlan(surfaces, task.lights[i], share);
+  if (!equal.ok()) return;
+  const absl::StatusOr<JudgedPlan> equal_judged = (*judge)(*std::move(equal), guard_texels);
+  if (equal_judged.ok()) entry.equal_split_energy = equal_judged->own_figures.energy;
+}
+
+// The budget's division among lights and maps.
+void DivideAmongPlans(const AllocationTask& task,
+                      const Surfaces& surfaces,
+                      const StepCallback& begin_step,
+                      AllocationReport* report) {
+  std::vector<PlannedLight> lights;
+  std::vector<size_t> planned;  // their places among the lights
+  begin_step("dividing the texels");
+  for (size_t i = 0; i < task.lights.size(); ++i) {
+    if (!task.light_status[i].ok()) continue;
+    lights.push_back({task.lights[i], task.weights[i]});
+    planned.push_back(i);
+  }
+  LightPlans plans = FitPlans(surfaces, lights, *task.plans);
+  size_t num_plans = 0;
+  for (const absl::StatusOr<LightPlan>& plan : plans) num_plans += plan.ok() ? 1 : 0;
+  size_t next = 0;
+  for (size_t i = 0; i < task.lights.size(); ++i) {
+    begin_step(absl::StrCat("judging ", task.lights[i].name));
+    const bool has_plan = next < planned.size() && planned[next] == i;
+    AddPlan(task,
+            surfaces,
+            i,
+            has_plan ? std::move(plans[next++]) : task.light_status[i],
+            num_plans,
+            report);
+  }
+}
+
 absl::StatusOr<ToleranceMap> SmallestMap(const AllocationTask& task,
                                          const Surfaces* surfaces,
                                          size_t i) {
@@ -149,7 +221,10 @@ absl::StatusOr<AllocationReport> AllocateLights(const AllocationTask& task,
   report.budget_texels = task.budget_texels;
   report.tolerance = task.tolerance;
   const Surfaces* known = surfaces.has_value() ? &*surfaces : nullptr;
-  if (task.tolerance.has_value()) {
+  report.fit.plan_options = task.plans;
+  if (task.plans.has_value() && known != nullptr) {
+    DivideAmongPlans(task, *known, begin_step, &report);
+  } else if (task.tolerance.has_value()) {
     MeetTolerances(task, known, begin_step, &report);
   } else if (absl::Status status = SplitBudget(task, known, begin_step, &report); !status.ok()) {
     return status;

@@ -13,6 +13,7 @@
 
 #include "absl/status/statusor.h"
 #include "optimizer/readback/readback.h"
+#include "partition/plan_options.h"
 #include "wire/allocation_json.h"
 #include "wire/summary_set.h"
 
@@ -35,6 +36,10 @@ struct AllocationTask {
 
   std::vector<double> weights;  // with a budget; element l belongs to lights[l]
   MapSizeRules rules;
+
+  // With a budget and a read-back: several maps for each light, which the budget is divided among;
+  // PlanOptions::texels is the budget, and `rules` do not count.
+  std::optional<PlanOptions> plans;
 };
 
 // Called as each step begins, with words such as "fitting sun". A budget takes two steps for each

@@ -10,33 +10,20 @@
 #include "base/stop.h"
 #include "geometry/light_map.h"
 #include "optimizer/fit_matrix.h"
-#include "partition/divided_maps.h"
 #include "partition/map_depths.h"
+#include "partition/plan_sizes.h"
 
 namespace lightfit {
-
-namespace {
-
-// Of about this shape, and of no more texels.
-MapSize WholeSize(const CellMap& map, double texels) {
-  const double aspect = map.width / map.height;
-  const int width = std::clamp(
-      static_cast<int>(std::lround(std::sqrt(texels * aspect))), 1, static_cast<int>(texels));
-  const int height = std::max(1, static_cast<int>(texels / width));
-  return {std::min(width, kMaxMapSide), std::min(height, kMaxMapSide)};
-}
-
-}  // namespace
 
 absl::StatusOr<ScratchVector<MapOfCell>> MapsOfCells(const CellFitter& fitter,
                                                      const Cells& cells,
                                                      const PlanOptions& options) {
-  const ScratchVector<double> texels =
-      DivideTexels(fitter, cells, static_cast<double>(options.texels));
+  const absl::StatusOr<ScratchVector<MapSize>> sizes = SizesOfCells(fitter, cells, options);
+  if (!sizes.ok()) return sizes.status();
   const double margin_texels = options.guard_texels + options.fit.margin_texels;
   ScratchVector<MapOfCell> maps;
   for (size_t k = 0; k < cells.size(); ++k) {
-    const MapSize size = options.each.value_or(WholeSize(cells[k].map, texels[k]));
+    const MapSize size = (*sizes)[k];
     if (!(2.0 * margin_texels < std::min(size.width, size.height))) {
       return absl::FailedPreconditionError(
           absl::StrFormat("light \"%s\": options.guard_texels = %g leave nothing of a map of "

@@ -9,6 +9,7 @@
 #include "optimizer/fit.h"
 #include "partition/finish_plan.h"
 #include "partition/plan_cells.h"
+#include "partition/plan_sizes.h"
 
 namespace lightfit {
 
@@ -16,12 +17,6 @@ namespace {
 
 // How much less must be foretold for a plan of more maps to be taken: docs/plans.md.
 constexpr double kMoreMapsBelow = 0.95;
-
-// A square map of at most so many texels.
-MapSize SquareOf(int64_t texels) {
-  const int side = static_cast<int>(std::sqrt(static_cast<double>(texels)));
-  return {side, side};
-}
 
 LightPlan PlanOfOne(const LightMatrix& matrix) {
   LightPlan plan;
@@ -40,8 +35,7 @@ absl::StatusOr<LightPlan> PlanOfOneMap(const PlanOptions& options, const From&..
   FitOptions fit = options.fit;
   fit.margin_texels += options.guard_texels;
   if constexpr (sizeof...(From) == 1) fit.border = BorderChoice::kAutomatic;  // that of the view
-  const absl::StatusOr<LightMatrix> matrix =
-      FitLight(from..., options.each.value_or(SquareOf(options.texels)), fit);
+  const absl::StatusOr<LightMatrix> matrix = FitLight(from..., SizeOfOneMap(options), fit);
   if (!matrix.ok()) return matrix.status();
   return PlanOfOne(*matrix);
 }

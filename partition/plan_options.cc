@@ -1,5 +1,6 @@
 #include "partition/plan_options.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "absl/strings/str_format.h"
@@ -19,8 +20,22 @@ absl::Status ValidatePlanOptions(const PlanOptions& options) {
                         options.guard_texels));
   }
   const double margin = options.guard_texels + options.fit.margin_texels;
-  if (options.each.has_value()) return ValidateMapSize(*options.each, margin);
-  const int64_t least = LeastPlanTexels(options.max_maps);
+  if (options.each.has_value()) {
+    if (options.sizes.has_value()) {
+      return absl::InvalidArgumentError(
+          "options.each and options.sizes: one size for all maps, or sizes to choose from; want "
+          "one of the two");
+    }
+    return ValidateMapSize(*options.each, margin);
+  }
+  int64_t least = LeastPlanTexels(options.max_maps);
+  if (options.sizes.has_value()) {
+    if (absl::Status status = ValidateMapSizeRules(*options.sizes, margin); !status.ok()) {
+      return status;
+    }
+    const int64_t side = AllowedSides(*options.sizes).front();
+    least = std::max(least, side * side * options.max_maps);
+  }
   const int64_t most = int64_t{kMaxMapSide} * kMaxMapSide;
   if (options.texels < least || options.texels > most) {
     return absl::InvalidArgumentError(

@@ -9,6 +9,7 @@
 #include "absl/status/status.h"
 #include "geometry/map_size.h"
 #include "optimizer/fit_options.h"
+#include "optimizer/sizing/map_sizes.h"
 
 namespace lightfit {
 
@@ -32,6 +33,10 @@ struct PlanOptions {
 
   // All maps have this size, and `texels` does not count: for arrays of equal textures.
   std::optional<MapSize> each;
+
+  // The sizes that maps may have, `texels` in all: those of least energy are chosen. Not with
+  // `each`. Takes memory from the heap.
+  std::optional<MapSizeRules> sizes;
 
   // The outermost texels of every map that look-ups keep away from, half a filter's width: what the
   // maps must serve lies within. >= 0.

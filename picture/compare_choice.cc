@@ -8,35 +8,35 @@
 
 namespace lightfit {
 
-int64_t CountOf(const ComparedMap& map, Bias bias) {
+int64_t CountOf(const ComparedRow& map, Bias bias) {
   return bias == Bias::kIdeal ? map.wrong->ideal : map.wrong->practical;
 }
 
-const std::vector<Lighting>& ShadowsOf(const ComparedMap& map, Bias bias) {
+const std::vector<Lighting>& ShadowsOf(const ComparedRow& map, Bias bias) {
   return bias == Bias::kIdeal ? map.image.ideal : map.image.practical;
 }
 
-bool HasImage(const ComparedMap& map) { return map.status.ok() && map.wrong.has_value(); }
+bool HasImage(const ComparedRow& map) { return map.status.ok() && map.wrong.has_value(); }
 
-std::vector<const ComparedMap*> InOrder(const LightComparison& light, Bias bias) {
-  std::vector<const ComparedMap*> maps;
-  for (const ComparedMap& map : light.maps) maps.push_back(&map);
-  const auto key = [&](const ComparedMap* map) {
+std::vector<const ComparedRow*> InOrder(const LightComparison& light, Bias bias) {
+  std::vector<const ComparedRow*> maps;
+  for (const ComparedRow& map : light.rows) maps.push_back(&map);
+  const auto key = [&](const ComparedRow* map) {
     const bool is_ours = map == &light.lightfit();
     const int64_t count = HasImage(*map) ? CountOf(*map, bias) : 0;
     return std::tuple(!is_ours, !HasImage(*map), count);
   };
-  std::stable_sort(maps.begin(), maps.end(), [&](const ComparedMap* a, const ComparedMap* b) {
+  std::stable_sort(maps.begin(), maps.end(), [&](const ComparedRow* a, const ComparedRow* b) {
     return key(a) < key(b);
   });
   return maps;
 }
 
-const ComparedMap* Rival(const LightComparison& light, Bias bias) {
-  const ComparedMap* focused = light.Find(MethodName(Method::kFocused));
+const ComparedRow* Rival(const LightComparison& light, Bias bias) {
+  const ComparedRow* focused = light.Find(MethodName(Method::kFocused));
   if (focused != nullptr && HasImage(*focused)) return focused;
-  const ComparedMap* worst = nullptr;
-  for (const ComparedMap& map : light.maps) {
+  const ComparedRow* worst = nullptr;
+  for (const ComparedRow& map : light.rows) {
     if (!HasImage(map)) continue;
     if (worst == nullptr || CountOf(map, bias) > CountOf(*worst, bias)) worst = &map;
   }
@@ -45,7 +45,7 @@ const ComparedMap* Rival(const LightComparison& light, Bias bias) {
 
 CropBox ChooseCrop(const LightComparison& light, Bias bias, int width, int height, CropBox size) {
   std::vector<int32_t> gain(static_cast<size_t>(width) * height, 0);
-  const auto add = [&](const ComparedMap* map, int32_t sign) {
+  const auto add = [&](const ComparedRow* map, int32_t sign) {
     if (map == nullptr || !HasImage(*map)) return;
     const std::vector<uint8_t> wrong = WrongMask(light.truth, ShadowsOf(*map, bias));
     for (size_t i = 0; i < wrong.size(); ++i) gain[i] += sign * wrong[i];
@@ -59,7 +59,7 @@ size_t MostTellingLight(absl::Span<const LightComparison> lights, Bias bias) {
   size_t best = 0;
   int64_t best_difference = -1;
   for (size_t i = 0; i < lights.size(); ++i) {
-    const ComparedMap* focused = lights[i].Find(MethodName(Method::kFocused));
+    const ComparedRow* focused = lights[i].Find(MethodName(Method::kFocused));
     if (focused == nullptr || !HasImage(*focused) || !HasImage(lights[i].lightfit())) continue;
     const int64_t difference =
         std::abs(CountOf(*focused, bias) - CountOf(lights[i].lightfit(), bias));

@@ -17,16 +17,16 @@ namespace lightfit {
 
 // Whether there are wrong pixels to count and, with CompareOptions::keep_images, shadows to draw:
 // what the next two require.
-bool HasImage(const ComparedMap& map);
-int64_t CountOf(const ComparedMap& map, Bias bias);
-const std::vector<Lighting>& ShadowsOf(const ComparedMap& map, Bias bias);
+bool HasImage(const ComparedRow& map);
+int64_t CountOf(const ComparedRow& map, Bias bias);
+const std::vector<Lighting>& ShadowsOf(const ComparedRow& map, Bias bias);
 
 // Lightfit first, then from the fewest wrong pixels up, then those without a matrix.
-std::vector<const ComparedMap*> InOrder(const LightComparison& light, Bias bias);
+std::vector<const ComparedRow*> InOrder(const LightComparison& light, Bias bias);
 
 // The method that the crop sets lightfit against: the focused map, or where there is none the one
 // with most wrong pixels. Null when no method has an image.
-const ComparedMap* Rival(const LightComparison& light, Bias bias);
+const ComparedRow* Rival(const LightComparison& light, Bias bias);
 
 // Where the rival has most wrong pixels over lightfit's, in an image of width x height.
 CropBox ChooseCrop(const LightComparison& light, Bias bias, int width, int height, CropBox size);

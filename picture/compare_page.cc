@@ -9,6 +9,7 @@
 #include "absl/strings/str_format.h"
 #include "base/number.h"
 #include "jobs/compare/totals.h"
+#include "jobs/schemes/asked_maps.h"
 #include "picture/bar_chart.h"
 #include "picture/compare_choice.h"
 #include "picture/shadow_panel.h"
@@ -96,11 +97,10 @@ class Page {
     Text(
         kMargin,
         kMargin + 44,
-        absl::StrFormat("screen %d x %d pixels, shadow map %d x %d texels; %s%s",
+        absl::StrFormat("screen %d x %d pixels, %s; %s%s",
                         camera.width,
                         camera.height,
-                        options_.map.width,
-                        options_.map.height,
+                        options_.maps,
                         options_.bias == Bias::kIdeal ? "ideal bias: sampling error alone"
                                                       : "practical bias, as in a renderer",
                         options_.phases > 1
@@ -118,17 +118,17 @@ class Page {
         absl::StrCat(PercentText(judged > 0 ? static_cast<double>(counts.shadowed) / judged : 0.0),
                      " % of what faces the light in shadow"),
         kTextColor);
-    DrawShadows(light_.truth);
+    DrawShadows(light_.truth, {});
     ++cell_;
   }
 
-  void DrawMap(const ComparedMap& map) {
-    const bool is_ours = &map == &light_.lightfit();
-    if (!HasImage(map)) {
-      Header(map.name, "no matrix", kWarningColor);
+  void DrawRow(const ComparedRow& row) {
+    const bool is_ours = &row == &light_.lightfit();
+    if (!HasImage(row)) {
+      Header(row.name, options_.has_plans ? "no maps" : "no matrix", kWarningColor);
       canvas_.FillRectangle(X(), PanelY(), layout_.panel_width, layout_.panel_height, kPanelColor);
       int y = PanelY() + 30;
-      for (const std::string& line : typeface_.Wrapped(std::string(map.status.message()),
+      for (const std::string& line : typeface_.Wrapped(std::string(row.status.message()),
                                                        layout_.panel_width - 24,
                                                        {.size_px = kCaptionSize})) {
         if (y > PanelY() + layout_.panel_height) break;
@@ -138,25 +138,29 @@ class Page {
       ++cell_;
       return;
     }
-    const int64_t count = CountOf(map, options_.bias);
+    const int64_t count = CountOf(row, options_.bias);
     std::string caption = absl::StrCat(count, count == 1 ? " wrong pixel" : " wrong pixels");
-    if (map.border == Border::kDark) caption += ", dark border";
+    const int num_maps = NumMaps(row.drawn);
+    if (num_maps > 1) absl::StrAppend(&caption, ", ", num_maps, " maps");
+    if (row.border() == Border::kDark) caption += ", dark border";
     if (!is_ours && HasImage(light_.lightfit())) {
       const std::optional<double> ratio =
           RatioOf(static_cast<double>(count),
                   static_cast<double>(CountOf(light_.lightfit(), options_.bias)));
       if (ratio.has_value()) absl::StrAppend(&caption, ", ", FigureText(*ratio), " x lightfit");
     }
-    Header(map.name, caption, is_ours ? kGainColor : kTextColor);
-    DrawShadows(ShadowsOf(map, options_.bias));
+    Header(row.name, caption, is_ours ? kGainColor : kTextColor);
+    DrawShadows(
+        ShadowsOf(row, options_.bias),
+        num_maps > 1 ? AskedMaps(row.drawn, light_.light, stage_.screen) : std::vector<int>());
     ++cell_;
   }
 
   // In a cell that no method needs: how many wrong pixels each has.
-  void DrawBars(const std::vector<const ComparedMap*>& maps) {
+  void DrawBars(const std::vector<const ComparedRow*>& maps) {
     if (cell_ >= layout_.columns * layout_.rows) return;
     std::vector<Bar> bars;
-    for (const ComparedMap* map : maps) {
+    for (const ComparedRow* map : maps) {
       if (!HasImage(*map)) continue;
       const Rgb color = map == &light_.lightfit() ? kGainColor : kReceiverColor;
       bars.push_back({map->name, CountOf(*map, options_.bias), color});
@@ -171,7 +175,7 @@ class Page {
     int x = kMargin;
     const int y = layout_.height() - kLegendHeight + 12;
     canvas_.FillRectangle(kMargin, y - 14, layout_.width() - 2 * kMargin, 1, kRuleColor);
-    const ComparedMap* rival = Rival(light_, options_.bias);
+    const ComparedRow* rival = Rival(light_, options_.bias);
     const std::string crop =
         absl::StrFormat("crop, %d times enlarged: where %s and lightfit differ most",
                         layout_.crop_factor,
@@ -185,6 +189,11 @@ class Page {
       Text(x + 21, y + 15, text, style);
       x += 21 + typeface_.Width(text, style) + 30;
     }
+    if (!options_.has_plans) return;
+    Text(kMargin,
+         y + 37,
+         "tint: which of its maps a pixel asks; of pages, which level",
+         {.size_px = kCaptionSize, .color = kFaintTextColor});
   }
 
  private:
@@ -202,8 +211,9 @@ class Page {
     Text(X(), PanelY() - 11, caption, {.size_px = kCaptionSize, .color = kFaintTextColor});
   }
 
-  void DrawShadows(const std::vector<Lighting>& shadows) {
-    const Image full = ShadeShadows(stage_.screen, light_.light, light_.truth, shadows);
+  // Tinted by `asked`, where there are several maps.
+  void DrawShadows(const std::vector<Lighting>& shadows, const std::vector<int>& asked) {
+    const Image full = ShadeShadows(stage_.screen, light_.light, light_.truth, shadows, asked);
     const Image panel = layout_.magnified > 1
                             ? Magnified(full, layout_.magnified)
                             : ReducedPanel(full, WrongMask(light_.truth, shadows), layout_.reduced);
@@ -243,13 +253,13 @@ Canvas DrawComparePicture(const CompareStage& stage,
                           const ComparePictureOptions& options,
                           const Typeface& typeface) {
   const Camera& camera = stage.screen.camera;
-  Layout layout = LayoutFor(camera.width, camera.height, static_cast<int>(light.maps.size()) + 1);
+  Layout layout = LayoutFor(camera.width, camera.height, static_cast<int>(light.rows.size()) + 1);
   layout.crop = ChooseCrop(light, options.bias, camera.width, camera.height, layout.crop);
   Page page(stage, light, options, layout, typeface);
   page.DrawTitle();
   page.DrawTruth();
-  const std::vector<const ComparedMap*> maps = InOrder(light, options.bias);
-  for (const ComparedMap* map : maps) page.DrawMap(*map);
+  const std::vector<const ComparedRow*> maps = InOrder(light, options.bias);
+  for (const ComparedRow* map : maps) page.DrawRow(*map);
   page.DrawBars(maps);
   page.DrawLegend();
   return page.TakeCanvas();

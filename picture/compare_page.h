@@ -17,9 +17,10 @@
 namespace lightfit {
 
 struct ComparePictureOptions {
-  std::string title;  // the scene's name
-  MapSize map;
-  int phases = 1;  // that counts are means over; shadows are those of the first
+  std::string title;       // the scene's name
+  std::string maps;        // of every method: "map 400 x 400 texels"
+  bool has_plans = false;  // whether methods may have several maps
+  int phases = 1;          // that counts are means over; shadows are those of the first
   Bias bias = Bias::kIdeal;
 };
 

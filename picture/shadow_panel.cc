@@ -13,6 +13,7 @@ constexpr float kFormShare = 0.09f;   // of the eye's own light, so that unlit s
 constexpr float kLitLevel = 0.42f;
 constexpr float kCosineShare = 0.46f;
 
+constexpr float kTintOpacity = 0.22f;  // of the map that a pixel asks
 constexpr float kMarkOpacity = 0.92f;
 constexpr float kLeastMarkOpacity = 0.55f;  // of a square in which one pixel is wrong
 
@@ -35,7 +36,8 @@ Rgb Grey(const SurfacePoint& pixel, const Eigen::Vector3d& eye, const Light& lig
 Image ShadeShadows(const SurfaceImage& image,
                    const Light& light,
                    absl::Span<const Lighting> truth,
-                   absl::Span<const Lighting> shadows) {
+                   absl::Span<const Lighting> shadows,
+                   absl::Span<const int> asked) {
   Image shaded(image.camera.width, image.camera.height, kPanelColor);
   const Eigen::Matrix4d world_from_camera = image.camera.camera_from_world.inverse();
   const Eigen::Vector3d eye = world_from_camera.block<3, 1>(0, 3);
@@ -46,7 +48,9 @@ Image ShadeShadows(const SurfaceImage& image,
       const Rgb mark = shadows[i] == Lighting::kShadowed ? kFalseShadowColor : kLightLeakColor;
       shaded.pixels()[i] = Mix(Grey(pixel, eye, light, true), mark, kMarkOpacity);
     } else {
-      shaded.pixels()[i] = Grey(pixel, eye, light, shadows[i] == Lighting::kLit);
+      const Rgb grey = Grey(pixel, eye, light, shadows[i] == Lighting::kLit);
+      const bool is_tinted = !asked.empty() && asked[i] >= 0;
+      shaded.pixels()[i] = is_tinted ? Mix(grey, MapColor(asked[i]), kTintOpacity) : grey;
     }
   }
   return shaded;

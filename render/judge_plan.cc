@@ -25,9 +25,10 @@ Eigen::Vector2d LookUp(const Eigen::Matrix4d& map_from_world, const Eigen::Vecto
 }
 
 // The texel there, row-major, or kNoTexel.
-int32_t TexelAt(const Eigen::Vector2d& uv, MapSize size) {
-  const bool is_inside = uv.x() >= 0.0 && uv.x() < size.width && uv.y() >= 0.0 &&
-                         uv.y() < size.height;  // false for NaN
+int32_t TexelAt(const Eigen::Vector2d& uv, MapSize size, double guard_texels) {
+  const bool is_inside = uv.x() >= guard_texels && uv.x() < size.width - guard_texels &&
+                         uv.y() >= guard_texels &&
+                         uv.y() < size.height - guard_texels;  // false for NaN
   if (!is_inside) return kNoTexel;
   return static_cast<int32_t>(uv.y()) * size.width + static_cast<int32_t>(uv.x());
 }
@@ -64,8 +65,9 @@ class PlanMaps : public TexelMaps {
            const Plan& plan,
            const PlanLookUp& look_up,
            const std::vector<Eigen::Matrix3d>& map_from_ray,
-           const Eigen::Vector2d& move)
-      : plan_(plan), look_up_(look_up), move_(move) {
+           const Eigen::Vector2d& move,
+           double guard_texels)
+      : plan_(plan), look_up_(look_up), move_(move), guard_texels_(guard_texels) {
     for (int k = 0; k < look_up.num_maps(); ++k) {
       Eigen::Matrix3d moved_from_ray = map_from_ray[k];
       moved_from_ray.topRows<2>() += move * map_from_ray[k].row(2);
@@ -83,7 +85,8 @@ class PlanMaps : public TexelMaps {
     double least = 0.0;
     for (int k = 0; k < look_up_.num_maps(); ++k) {
       const PlanMap& map = plan_.maps[k];
-      const int32_t texel = TexelAt(LookUp(map.map_from_world, world) + move_, map.size);
+      const int32_t texel =
+          TexelAt(LookUp(map.map_from_world, world) + move_, map.size, guard_texels_);
       if (texel == kNoTexel || !look_up_.IsServed(k, world)) continue;
       const double coarseness = look_up_.CoarsenessOf(k, world);
       if (asked != kNoTexel && !(coarseness < least)) continue;
@@ -104,6 +107,7 @@ class PlanMaps : public TexelMaps {
   const Plan& plan_;
   const PlanLookUp& look_up_;
   Eigen::Vector2d move_;
+  double guard_texels_;
   std::vector<MapRays> rays_;
   std::vector<int32_t> begin_;  // the number of each map's first texel
   int32_t num_texels_ = 0;
@@ -117,16 +121,18 @@ absl::StatusOr<ShadowImage> JudgeBy(const Judge& judge,
                                     absl::Span<const Lighting> truth,
                                     const Light& light,
                                     const Plan& plan,
-                                    const JudgeOptions& options) {
+                                    const JudgeOptions& options,
+                                    double guard_texels) {
   if (absl::Status status = ValidateSizes(plan, light); !status.ok()) return status;
-  const absl::StatusOr<PlanLookUp> look_up = PlanLookUp::Create(plan, light);
+  const absl::StatusOr<PlanLookUp> look_up = PlanLookUp::Create(plan, light, guard_texels);
   if (!look_up.ok()) return look_up.status();
   std::vector<Eigen::Matrix3d> map_from_ray;
   for (const PlanMap& map : plan.maps) {
     map_from_ray.push_back(*MapFromRay(map.map_from_world, light));  // as PlanLookUp found it
   }
   const auto maps = [&](const Eigen::Vector2d& move) -> std::unique_ptr<TexelMaps> {
-    return std::make_unique<PlanMaps>(caster, light, plan, *look_up, map_from_ray, move);
+    return std::make_unique<PlanMaps>(
+        caster, light, plan, *look_up, map_from_ray, move, guard_texels);
   };
   return judge(caster, image, truth, light, plan.border, maps, options);
 }
@@ -138,8 +144,9 @@ absl::StatusOr<ShadowImage> JudgePlan(const RayCaster& caster,
                                       absl::Span<const Lighting> truth,
                                       const Light& light,
                                       const Plan& plan,
-                                      const JudgeOptions& options) {
-  return JudgeBy(JudgeTexels, caster, image, truth, light, plan, options);
+                                      const JudgeOptions& options,
+                                      double guard_texels) {
+  return JudgeBy(JudgeTexels, caster, image, truth, light, plan, options, guard_texels);
 }
 
 absl::StatusOr<ShadowImage> JudgePlanFirstPhase(const RayCaster& caster,
@@ -147,8 +154,9 @@ absl::StatusOr<ShadowImage> JudgePlanFirstPhase(const RayCaster& caster,
                                                 absl::Span<const Lighting> truth,
                                                 const Light& light,
                                                 const Plan& plan,
-                                                const JudgeOptions& options) {
-  return JudgeBy(JudgeTexelsFirstPhase, caster, image, truth, light, plan, options);
+                                                const JudgeOptions& options,
+                                                double guard_texels) {
+  return JudgeBy(JudgeTexelsFirstPhase, caster, image, truth, light, plan, options, guard_texels);
 }
 
 }  // namespace lightfit

@@ -22,15 +22,17 @@
 
 namespace lightfit {
 
-// `outside` of the wrong pixels counts those that no map may be asked about. InvalidArgument for
-// options out of range, when the maps have too many texels, and for a plan that PlanLookUp refuses:
-// without maps, or with a matrix that is not one of this light.
+// `outside` of the wrong pixels counts those that no map may be asked about; `guard_texels` as
+// PlanLookUp has them, of the moved maps. InvalidArgument for options out of range, when the maps
+// have too many texels, and for a plan that PlanLookUp refuses: without maps, with a matrix that is
+// not one of this light, or of which the guard leaves nothing.
 absl::StatusOr<ShadowImage> JudgePlan(const RayCaster& caster,
                                       const SurfaceImage& image,
                                       absl::Span<const Lighting> truth,
                                       const Light& light,
                                       const Plan& plan,
-                                      const JudgeOptions& options = {});
+                                      const JudgeOptions& options = {},
+                                      double guard_texels = 0.0);
 
 // The same of phase 0 alone, in its share of the time: the same images, and counts of that phase.
 absl::StatusOr<ShadowImage> JudgePlanFirstPhase(const RayCaster& caster,
@@ -38,6 +40,7 @@ absl::StatusOr<ShadowImage> JudgePlanFirstPhase(const RayCaster& caster,
                                                 absl::Span<const Lighting> truth,
                                                 const Light& light,
                                                 const Plan& plan,
-                                                const JudgeOptions& options = {});
+                                                const JudgeOptions& options = {},
+                                                double guard_texels = 0.0);
 
 }  // namespace lightfit

@@ -3,6 +3,7 @@
 #include "absl/strings/str_format.h"
 #include "base/text_file.h"
 #include "geometry/map_size.h"
+#include "wire/options_proto.h"
 #include "wire/proto_json.h"
 
 namespace lightfit {
@@ -27,19 +28,10 @@ v1::Tolerance ToleranceToProto(const Tolerance& tolerance) {
   return proto;
 }
 
-v1::MapSizeRules RulesToProto(const MapSizeRules& rules) {
-  v1::MapSizeRules proto;
-  proto.set_multiple(rules.multiple);
-  proto.set_powers_of_two(rules.powers_of_two);
-  proto.set_min_side(rules.min_side);
-  proto.set_max_side(rules.max_side);
-  return proto;
+int64_t TexelsOf(const LightFit& fit) {
+  if (fit.plan.has_value()) return NumTexels(PlanOf(fit.plan->plan));
+  return fit.matrix.ok() ? TexelsOf(fit.matrix->map) : 0;
 }
-
-// What a field of 0 means.
-int SideOr(int side, int default_side) { return side == 0 ? default_side : side; }
-
-int64_t TexelsOf(const LightFit& fit) { return fit.matrix.ok() ? TexelsOf(fit.matrix->map) : 0; }
 
 }  // namespace
 
@@ -69,17 +61,6 @@ absl::StatusOr<Tolerance> ToleranceFromProto(const v1::Tolerance& proto) {
   return tolerance;
 }
 
-absl::StatusOr<MapSizeRules> MapSizeRulesFromProto(const v1::MapSizeRules& proto,
-                                                   double margin_texels) {
-  MapSizeRules rules;
-  rules.multiple = SideOr(proto.multiple(), rules.multiple);
-  rules.powers_of_two = proto.powers_of_two();
-  rules.min_side = SideOr(proto.min_side(), rules.min_side);
-  rules.max_side = SideOr(proto.max_side(), rules.max_side);
-  if (absl::Status status = ValidateMapSizeRules(rules, margin_texels); !status.ok()) return status;
-  return rules;
-}
-
 int64_t AllocationReport::Texels() const {
   int64_t texels = 0;
   for (const LightFit& light : fit.lights) texels += TexelsOf(light);
@@ -98,9 +79,10 @@ v1::Allocation AllocationToProto(const AllocationReport& report) {
   proto.mutable_lights()->Swap(fit.mutable_lights());
   proto.mutable_readback()->Swap(fit.mutable_readback());
   proto.mutable_options()->Swap(fit.mutable_options());
+  if (fit.has_plan_options()) proto.mutable_plan_options()->Swap(fit.mutable_plan_options());
   if (report.budget_texels) proto.set_budget_texels(*report.budget_texels);
   if (report.tolerance) *proto.mutable_tolerance() = ToleranceToProto(*report.tolerance);
-  *proto.mutable_rules() = RulesToProto(report.rules);
+  *proto.mutable_rules() = MapSizeRulesToProto(report.rules);
   proto.set_texels(report.Texels());
   for (size_t i = 0; i < report.entries.size(); ++i) {
     const AllocationEntry& entry = report.entries[i];

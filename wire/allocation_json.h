@@ -50,11 +50,8 @@ struct AllocationReport {
 // Footprints are finite numbers of a read-back's pixels, and stay so.
 inline constexpr double kMaxImageScale = 1e6;
 
-// InvalidArgument names the field: "tolerance.limit_px = ...", "rules.min_side = ...". An
-// image_scale of 0 is 1; sides and multiples that are 0 are the defaults.
+// InvalidArgument names the field: "tolerance.limit_px = ...". An image_scale of 0 is 1.
 absl::StatusOr<Tolerance> ToleranceFromProto(const v1::Tolerance& proto);
-absl::StatusOr<MapSizeRules> MapSizeRulesFromProto(const v1::MapSizeRules& proto,
-                                                   double margin_texels);
 
 v1::Allocation AllocationToProto(const AllocationReport& report);
 

@@ -11,6 +11,7 @@
 #include "absl/strings/strip.h"
 #include "geometry/homography.h"
 #include "wire/matrix_proto.h"
+#include "wire/options_proto.h"
 #include "wire/result_json.h"
 
 namespace lightfit {
@@ -104,6 +105,7 @@ v1::PlanOptions PlanOptionsToProto(const PlanOptions& options) {
   } else {
     proto.set_texels(options.texels);
   }
+  if (options.sizes.has_value()) *proto.mutable_sizes() = MapSizeRulesToProto(*options.sizes);
   proto.set_guard_texels(options.guard_texels);
   proto.set_choose_by_forecast(options.choose_by_forecast);
   return proto;
@@ -126,6 +128,12 @@ absl::StatusOr<PlanOptions> PlanOptionsFromProto(const v1::PlanOptions& proto,
     options.each = MapSize{proto.each().width(), proto.each().height()};
   } else if (proto.has_texels()) {
     options.texels = proto.texels();
+  }
+  if (proto.has_sizes()) {
+    const absl::StatusOr<MapSizeRules> sizes =
+        MapSizeRulesFromProto(proto.sizes(), fit.margin_texels + options.guard_texels);
+    if (!sizes.ok()) return Named("plan_options.sizes", sizes.status());
+    options.sizes = *sizes;
   }
   const absl::Status status = ValidatePlanOptions(options);
   if (status.ok()) return options;

@@ -26,6 +26,8 @@ constexpr char kExamples[] =
     "  lightfit allocate 0001.exr --lights scene.json --tolerance rms:1.0 --image 1920x1080\n"
     "  lightfit allocate 0001.exr --lights scene.json --tolerance p99:1.5\n"
     "  lightfit allocate --summary shot.summary --budget 4096x4096 --json maps.json\n"
+    "  lightfit allocate 0001.exr --lights scene.json --budget 4096x4096 --maps 4 --json "
+    "maps.json\n"
     "\n"
     "A budget is a number of texels: 4096x4096 are 16777216 of them, for all maps together. Each\n"
     "map is a texture of its own; they are not packed into one image of that shape.\n"
@@ -130,22 +132,22 @@ void CheckGoal(const AllocateFlags& flags) {
   }
 }
 
-void DeclareSizes(CLI::App* app, AllocateFlags* flags) {
-  const std::string group = "Sizes of maps";
-  MapSizeRules* rules = &flags->rules;
-  CLI::Option* multiple =
-      app->add_option("--multiple", rules->multiple, "Sides are multiples of this [64]")
-          ->type_name("TEXELS")
-          ->group(group);
-  app->add_flag("--power-of-two", rules->powers_of_two, "Sides are powers of two")
-      ->excludes(multiple)
-      ->group(group);
-  app->add_option("--min-side", rules->min_side, "No side is shorter [64]")
-      ->type_name("TEXELS")
-      ->group(group);
-  app->add_option("--max-side", rules->max_side, "No side is longer [16384]")
-      ->type_name("TEXELS")
-      ->group(group);
+// Several maps for each light: the budget is theirs in all.
+void CheckPlans(const CLI::App& app, AllocateFlags* flags) {
+  PlanFlags* plan = &flags->fit.plan;
+  if (plan->max_maps > 1 && flags->tolerance.has_value()) {
+    throw CLI::ValidationError("--maps",
+                               "divides a budget among lights and maps, --budget; a tolerance is "
+                               "for single maps");
+  }
+  if (plan->max_maps == 1) {
+    if (app.count("--guard") == 0) return;
+    throw CLI::ValidationError("--guard", "is for several maps, --maps 2 or more");
+  }
+  CheckNotUsedByPlans(app);
+  plan->has_rules = HasSizeFlags(app);
+  plan->rules = flags->rules;
+  plan->texels = *flags->budget_texels;
 }
 
 absl::Status NoTolerance(const std::string& text) {
@@ -175,7 +177,8 @@ void DeclareAllocateFlags(CLI::App* app, AllocateFlags* flags) {
   DeclareCameraFlags(app, kCameraGroup, fit);
   DeclareMethodFlags(app, &fit->options);
   DeclareGoal(app, flags);
-  DeclareSizes(app, flags);
+  DeclareSizeFlags(app, "Sizes of maps", &flags->rules);
+  DeclareMapsFlags(app, &fit->plan);
   const std::string output = "Output";
   DeclareMapFlags(app, output, fit);
   app->remove_option(app->get_option("--map"));  // sizes are what is asked for
@@ -191,6 +194,7 @@ void DeclareAllocateFlags(CLI::App* app, AllocateFlags* flags) {
     flags->fit.has_border = app->count("--border") > 0;
     CheckSource(*app, flags->fit, {kInputGroup, kCameraGroup});
     CheckGoal(*flags);
+    CheckPlans(*app, flags);
   });
 }
 

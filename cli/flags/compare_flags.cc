@@ -29,6 +29,9 @@ constexpr char kExamples[] =
     "  lightfit compare sponza.glb --camera 3.5,1.7,-4.2:-9,2.2,-4.4:55 --light sun=sun:1,-3,0.5 "
     "\\\n"
     "      --camera-step 0.1,0,0,0.5\n"
+    "  lightfit compare sponza.glb --camera 3.5,1.7,-4.2:-9,2.2,-4.4:55 --light sun=sun:1,-3,0.5 "
+    "\\\n"
+    "      --maps 4 --texels 1024x1024\n"
     "\n"
     "Units: positions in world units, images in pixels, maps in texels. A read-back has no true\n"
     "shadows to count wrong or flipped pixels by: it gives energies, footprints and, with\n"
@@ -140,6 +143,21 @@ void DeclareCrawl(CLI::App* app, CrawlFlags* flags) {
       ->group(group);
 }
 
+// A name of --matrix that a row beside plans has already.
+void CheckMatrixNames(const CompareFlags& flags) {
+  const std::optional<PlanOptions> plan = PlanOptionsOf(flags.fit.plan, flags.fit.options);
+  if (!plan.has_value()) return;
+  CompareOptions options;
+  SetPlan(*plan, &options);
+  const std::vector<std::string> rows = RowNames(options);
+  for (const MatrixFlag& matrix : flags.matrices) {
+    if (std::find(rows.begin(), rows.end(), matrix.name) == rows.end()) continue;
+    throw CLI::ValidationError(
+        "--matrix",
+        absl::StrCat("\"", matrix.name, "\" is a method already with --maps, want another name"));
+  }
+}
+
 void DeclareOutput(CLI::App* app, CompareFlags* flags) {
   const std::string group = "Output";
   app->add_flag("--per-light", flags->per_light, "With many lights a table for each of them too")
@@ -212,6 +230,7 @@ void DeclareCompareFlags(CLI::App* app, CompareFlags* flags) {
   flags->fit.options.border = BorderChoice::kAutomatic;
   DeclareSceneFlags(app, &flags->scene, "SCENE|READBACK.exr");
   DeclareSizeFlags(app, flags);
+  DeclarePlanFlags(app, flags->map, &flags->fit.plan);
   DeclareMatrices(app, flags);
   DeclareCrawl(app, &flags->crawl);
   DeclareMethodFlags(app, &flags->fit.options);
@@ -220,6 +239,10 @@ void DeclareCompareFlags(CLI::App* app, CompareFlags* flags) {
   DeclareReadbackFlags(app, group, &flags->fit);
   DeclareCameraExrFlags(app, group, &flags->fit.camera_exr);
   app->footer(kExamples);
+  app->callback([app, flags] {
+    CheckPlanFlags(*app, flags->map, &flags->fit.plan);
+    CheckMatrixNames(*flags);
+  });
 }
 
 absl::StatusOr<MatrixFlag> ParseMatrixFlag(const std::string& text) {

@@ -285,7 +285,7 @@ void DeclareFitFlags(CLI::App* app, FitFlags* flags) {
   DeclareInput(app, flags);
   DeclareCameraFlags(app, kCameraGroup, flags);
   DeclareMapFlags(app, "Map", flags);
-  DeclarePlanFlags(app, &flags->plan);
+  DeclarePlanFlags(app, flags->map, &flags->plan);
   DeclareMethod(app, flags);
   DeclareOutput(app, flags);
   app->footer(kExamples);
@@ -295,7 +295,7 @@ void DeclareFitFlags(CLI::App* app, FitFlags* flags) {
     flags->has_border = app->count("--border") > 0;
     CheckSource(*app, *flags, {kInputGroup, kCameraGroup});
     CheckNeedsOfFit(*app, *flags);
-    CheckPlanFlags(*app, flags);
+    CheckPlanFlags(*app, flags->map, &flags->plan);
   });
 }
 

@@ -2,11 +2,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <iterator>
 #include <string>
 
 #include "absl/strings/str_cat.h"
 #include "cli/flags/allocate_flags.h"
-#include "cli/flags/fit_flags.h"
 #include "optimizer/sizing/map_sizes.h"
 #include "partition/plan.h"
 
@@ -30,6 +30,8 @@ constexpr Unused kUnusedByPlans[] = {
     {"--rounds", "the plan of a shot is fitted to its samples, and weighs them as it goes"},
 };
 
+constexpr const char* kSizeFlags[] = {"--multiple", "--power-of-two", "--min-side", "--max-side"};
+
 // Verbs have some of the options each.
 size_t CountOf(const CLI::App& app, const char* flag) {
   const CLI::Option* option = app.get_option_no_throw(flag);
@@ -38,7 +40,29 @@ size_t CountOf(const CLI::App& app, const char* flag) {
 
 }  // namespace
 
-void DeclarePlanFlags(CLI::App* app, PlanFlags* flags) {
+void DeclareSizeFlags(CLI::App* app, const std::string& group, MapSizeRules* rules) {
+  CLI::Option* multiple =
+      app->add_option("--multiple", rules->multiple, "Sides are multiples of this [64]")
+          ->type_name("TEXELS")
+          ->group(group);
+  app->add_flag("--power-of-two", rules->powers_of_two, "Sides are powers of two")
+      ->excludes(multiple)
+      ->group(group);
+  app->add_option("--min-side", rules->min_side, "No side is shorter [64]")
+      ->type_name("TEXELS")
+      ->group(group);
+  app->add_option("--max-side", rules->max_side, "No side is longer [16384]")
+      ->type_name("TEXELS")
+      ->group(group);
+}
+
+bool HasSizeFlags(const CLI::App& app) {
+  return std::any_of(std::begin(kSizeFlags), std::end(kSizeFlags), [&](const char* flag) {
+    return CountOf(app, flag) > 0;
+  });
+}
+
+void DeclareMapsFlags(CLI::App* app, PlanFlags* flags) {
   app->add_option(
          "--maps",
          flags->max_maps,
@@ -47,20 +71,6 @@ void DeclarePlanFlags(CLI::App* app, PlanFlags* flags) {
          "of them have that size [1]")
       ->type_name("COUNT")
       ->check(CLI::Range(1, kMaxPlanMaps))
-      ->group(kGroup);
-  app->add_option_function<std::string>(
-         "--texels",
-         [flags](const std::string& text) {
-           const absl::StatusOr<int64_t> texels = ParseTexels(text);
-           if (!texels.ok()) {
-             throw CLI::ValidationError("--texels", std::string(texels.status().message()));
-           }
-           flags->texels = *texels;
-         },
-         "With --maps: texels of all maps of one light together, as a size or a number; never "
-         "more, "
-         "and sizes may differ [1024x1024, as one map has]")
-      ->type_name("WIDTHxHEIGHT|TEXELS")
       ->group(kGroup);
   app->add_option("--guard",
                   flags->guard_texels,
@@ -71,45 +81,80 @@ void DeclarePlanFlags(CLI::App* app, PlanFlags* flags) {
       ->group(kGroup);
 }
 
-void CheckPlanFlags(const CLI::App& app, FitFlags* flags) {
-  if (flags->plan.max_maps == 1) {
-    for (const char* flag : {"--texels", "--guard"}) {
-      if (app.count(flag) == 0) continue;
-      throw CLI::ValidationError(
-          flag, "is for several maps, --maps 2 or more; of a single map say the size, --map");
-    }
-    return;
-  }
+void DeclarePlanFlags(CLI::App* app, MapSize one_map, PlanFlags* flags) {
+  flags->texels = TexelsOf(one_map);
+  DeclareMapsFlags(app, flags);
+  app->add_option_function<std::string>(
+         "--texels",
+         [flags](const std::string& text) {
+           const absl::StatusOr<int64_t> texels = ParseTexels(text);
+           if (!texels.ok()) {
+             throw CLI::ValidationError("--texels", std::string(texels.status().message()));
+           }
+           flags->texels = *texels;
+         },
+         absl::StrCat("With --maps: texels of all maps of one light together, as a size or a "
+                      "number; never more, and sizes may differ [",
+                      one_map.width,
+                      "x",
+                      one_map.height,
+                      ", as one map has]"))
+      ->type_name("WIDTHxHEIGHT|TEXELS")
+      ->group(kGroup);
+  DeclareSizeFlags(app, "Sizes of several maps [any, unless one of these is given]", &flags->rules);
+}
+
+void CheckNotUsedByPlans(const CLI::App& app) {
   for (const Unused& unused : kUnusedByPlans) {
     if (CountOf(app, unused.flag) == 0) continue;
     throw CLI::ValidationError("--maps",
                                absl::StrCat("does not go with ", unused.flag, ": ", unused.reason));
   }
+}
+
+void CheckPlanFlags(const CLI::App& app, MapSize map, PlanFlags* flags) {
+  if (flags->max_maps == 1) {
+    for (const char* flag :
+         {"--texels", "--guard", "--multiple", "--power-of-two", "--min-side", "--max-side"}) {
+      if (CountOf(app, flag) == 0) continue;
+      throw CLI::ValidationError(
+          flag, "is for several maps, --maps 2 or more; of a single map say the size, --map");
+    }
+    return;
+  }
+  CheckNotUsedByPlans(app);
+  flags->has_rules = HasSizeFlags(app);
   if (app.count("--map") == 0) return;
-  if (flags->plan.texels.has_value()) {
+  if (flags->has_rules) {
+    throw CLI::ValidationError("--map",
+                               "is the size of every map, and --multiple, --power-of-two, "
+                               "--min-side and --max-side choose sizes: give one or the other");
+  }
+  if (app.count("--texels") > 0) {
     throw CLI::ValidationError("--texels",
                                "is what all maps of a light have together, and --map the size of "
                                "each: give one of the two");
   }
-  flags->plan.each = flags->map;
-  if (2.0 * flags->plan.guard_texels < std::min(flags->map.width, flags->map.height)) return;
+  flags->each = map;
+  if (2.0 * flags->guard_texels < std::min(map.width, map.height)) return;
   throw CLI::ValidationError("--guard",
-                             absl::StrCat(flags->plan.guard_texels,
+                             absl::StrCat(flags->guard_texels,
                                           " on every side leaves nothing of maps of --map ",
-                                          flags->map.width,
+                                          map.width,
                                           "x",
-                                          flags->map.height,
+                                          map.height,
                                           " texels"));
 }
 
-std::optional<PlanOptions> PlanOptionsOf(const FitFlags& flags) {
-  if (flags.plan.max_maps == 1) return std::nullopt;
+std::optional<PlanOptions> PlanOptionsOf(const PlanFlags& flags, const FitOptions& fit) {
+  if (flags.max_maps == 1) return std::nullopt;
   PlanOptions options;
-  options.fit = flags.options;
-  options.max_maps = flags.plan.max_maps;
-  options.texels = flags.plan.texels.value_or(TexelsOf(FitFlags().map));
-  options.each = flags.plan.each;
-  options.guard_texels = flags.plan.guard_texels;
+  options.fit = fit;
+  options.max_maps = flags.max_maps;
+  options.texels = flags.texels;
+  options.each = flags.each;
+  if (flags.has_rules) options.sizes = flags.rules;
+  options.guard_texels = flags.guard_texels;
   return options;
 }
 

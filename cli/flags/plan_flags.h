@@ -1,13 +1,15 @@
 // cli/flags/plan_flags.h
 //
-// The options of `lightfit fit` about several maps for one light.
+// The options of `lightfit fit`, `shot` and `compare` about several maps for one light.
 // In:   words; those that do not go together are refused while parsing (exit code 1).
-// Out:  PlanFlags, and from the flags of the fit PlanOptions.
+// Out:  PlanFlags, and with the options of the fit PlanOptions.
 #pragma once
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
+#include "optimizer/sizing/map_sizes.h"
 #include "partition/plan_options.h"
 
 namespace CLI {
@@ -16,22 +18,33 @@ class App;
 
 namespace lightfit::cli {
 
-struct FitFlags;
-
 struct PlanFlags {
   int max_maps = 1;
-  std::optional<int64_t> texels;  // of all maps of a light
-  std::optional<MapSize> each;    // --map, where it was given
+  int64_t texels = PlanOptions().texels;  // of all maps of a light
+  std::optional<MapSize> each;            // --map, where it was given
   double guard_texels = 0.0;
+  MapSizeRules rules;      // of the sizes of maps
+  bool has_rules = false;  // whether any of them was given
 };
 
-// Declares --maps, --texels and --guard on `app`.
-void DeclarePlanFlags(CLI::App* app, PlanFlags* flags);
+// Declares the rules of sizes, --multiple and so on.
+void DeclareSizeFlags(CLI::App* app, const std::string& group, MapSizeRules* rules);
+bool HasSizeFlags(const CLI::App& app);
 
-// Throws CLI::ValidationError where options do not go together; takes over --map.
-void CheckPlanFlags(const CLI::App& app, FitFlags* flags);
+// Declares --maps, --texels, --guard and the rules of sizes on `app`, which has --map. All maps
+// together have by default the texels of `one_map`, the default of --map.
+void DeclarePlanFlags(CLI::App* app, MapSize one_map, PlanFlags* flags);
+
+// --maps and --guard alone.
+void DeclareMapsFlags(CLI::App* app, PlanFlags* flags);
+
+// Throws CLI::ValidationError where something was given that plans have no use for.
+void CheckNotUsedByPlans(const CLI::App& app);
+
+// The same where options do not go together; takes over --map, which is `map`.
+void CheckPlanFlags(const CLI::App& app, MapSize map, PlanFlags* flags);
 
 // Nothing where one map of each light is wanted.
-std::optional<PlanOptions> PlanOptionsOf(const FitFlags& flags);
+std::optional<PlanOptions> PlanOptionsOf(const PlanFlags& flags, const FitOptions& fit);
 
 }  // namespace lightfit::cli

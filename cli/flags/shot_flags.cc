@@ -116,7 +116,7 @@ void DeclareShotFlags(CLI::App* app, ShotFlags* flags) {
   DeclareCameraFlags(
       app, "Camera; --frame is that of the first read-back, one camera is for all", &flags->fit);
   DeclareMapFlags(app, "Map", &flags->fit);
-  DeclarePlanFlags(app, &flags->fit.plan);
+  DeclarePlanFlags(app, flags->fit.map, &flags->fit.plan);
   DeclareMethodFlags(app, &flags->fit.options);
   app->add_flag("--as-published",
                 flags->fit.as_published,
@@ -139,7 +139,7 @@ void DeclareShotFlags(CLI::App* app, ShotFlags* flags) {
       ->group("Per shot");
   DeclareOutput(app, flags);
   app->footer(kExamples);
-  app->callback([app, flags] { CheckPlanFlags(*app, &flags->fit); });
+  app->callback([app, flags] { CheckPlanFlags(*app, flags->fit.map, &flags->fit.plan); });
 }
 
 TrackerOptions TrackerOptionsOf(const ShotFlags& flags) {
@@ -154,7 +154,7 @@ TrackerOptions TrackerOptionsOf(const ShotFlags& flags) {
 }
 
 std::optional<PlanTrackerOptions> PlanTrackerOptionsOf(const ShotFlags& flags) {
-  const std::optional<PlanOptions> plan = PlanOptionsOf(flags.fit);
+  const std::optional<PlanOptions> plan = PlanOptionsOf(flags.fit.plan, flags.fit.options);
   if (!plan.has_value()) return std::nullopt;
   PlanTrackerOptions options = PlanTrackerOptions::ForStability(flags.stability);
   options.plan = *plan;

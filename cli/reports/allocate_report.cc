@@ -29,9 +29,19 @@ constexpr char kBudgetLegend[] =
     "of\nequal shares. Below 1 is better; a light that needs less gives way to those that need "
     "more.\n";
 
+constexpr char kPlanBudgetLegend[] =
+    "Energy: what the division makes least, summed over the lights; beside it that of plans of "
+    "equal\n"
+    "shares. Below 1 is better; a light that needs less gives way to those that need more.\n";
+
+// Of the light's matrix or plan.
+const Figures& FiguresOf(const LightFit& fit) {
+  return fit.plan.has_value() ? fit.plan->figures : fit.matrix->figures;
+}
+
 std::string EnergyText(const LightFit& fit, const AllocationEntry& entry) {
   if (!entry.equal_split_energy || !(*entry.equal_split_energy > 0.0)) return "-";
-  return FigureText(fit.matrix->figures.energy / *entry.equal_split_energy);
+  return FigureText(FiguresOf(fit).energy / *entry.equal_split_energy);
 }
 
 // Summaries know the root mean square alone, and only of squares.
@@ -45,8 +55,13 @@ Table AllocationTable(const AllocationReport& report, double image_scale) {
   const bool has_samples = report.fit.options.compute_statistics;
   Table table;
   table.AddColumn("", "light");
-  table.AddColumn("map", "width");
-  table.AddColumn("map", "height");
+  const bool of_plans = report.fit.plan_options.has_value();
+  if (of_plans) {
+    table.AddColumn("", "maps");
+  } else {
+    table.AddColumn("map", "width");
+    table.AddColumn("map", "height");
+  }
   table.AddColumn("texels, %", has_budget ? "of budget" : "of all");
   if (has_rms) table.AddColumn("footprint, pixels", "rms");
   if (has_samples) table.AddColumn("footprint, pixels", "99 %");
@@ -61,12 +76,16 @@ Table AllocationTable(const AllocationReport& report, double image_scale) {
       table.AddRow({fit.light.name, "no map, see below"});
       continue;
     }
-    const FootprintStatistics& footprint = fit.matrix->figures.footprint;
+    const FootprintStatistics& footprint = FiguresOf(fit).footprint;
     const bool is_met = entry.reached.has_value() && entry.reached->is_met;
-    std::vector<std::string> row = {fit.light.name,
-                                    absl::StrCat(fit.matrix->map.width),
-                                    absl::StrCat(fit.matrix->map.height),
-                                    PercentText(report.Share(i))};
+    std::vector<std::string> row = {fit.light.name};
+    if (of_plans) {
+      row.push_back(absl::StrCat(fit.plan->plan.maps.size()));
+    } else {
+      row.push_back(absl::StrCat(fit.matrix->map.width));
+      row.push_back(absl::StrCat(fit.matrix->map.height));
+    }
+    row.push_back(PercentText(report.Share(i)));
     if (has_rms) row.push_back(FigureText(image_scale * footprint.rms));
     if (has_samples) row.push_back(FigureText(image_scale * footprint.p99));
     if (has_samples) row.push_back(FigureText(image_scale * footprint.worst));
@@ -83,7 +102,7 @@ std::string TotalText(const AllocationReport& report) {
   for (size_t i = 0; i < report.entries.size(); ++i) {
     const AllocationEntry& entry = report.entries[i];
     if (!report.fit.lights[i].matrix.ok() || !entry.equal_split_energy) continue;
-    energy += entry.weight * report.fit.lights[i].matrix->figures.energy;
+    energy += entry.weight * FiguresOf(report.fit.lights[i]).energy;
     equal += entry.weight * *entry.equal_split_energy;
   }
   if (!(equal > 0.0)) return "";
@@ -104,6 +123,11 @@ std::string GuaranteeText(const AllocationReport& report) {
                             "them.\n"
                           : " shadow-edge pixels of all frames taken\ntogether; not for each "
                             "frame, nor between those pixels.\n");
+}
+
+const char* BudgetLegend(const AllocationReport& report) {
+  if (!report.budget_texels.has_value()) return "";
+  return report.fit.plan_options.has_value() ? kPlanBudgetLegend : kBudgetLegend;
 }
 
 const char* Legend(const FitOptions& options) {
@@ -138,7 +162,7 @@ std::string AllocationText(const AllocationReport& report,
                       AllocationTable(report, image_scale).Text(),
                       has_budget ? TotalText(report) : GuaranteeText(report),
                       Legend(report.fit.options),
-                      has_budget ? kBudgetLegend : "");
+                      BudgetLegend(report));
 }
 
 }  // namespace lightfit::cli

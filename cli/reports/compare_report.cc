@@ -5,7 +5,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "base/csv.h"
 #include "base/number.h"
 #include "base/table.h"
 
@@ -46,14 +45,21 @@ constexpr char kFlipLegend[] =
     "the\n"
     "judged.\n";
 constexpr char kTotalLegend[] =
-    "Totals count the lights for which both the method and lightfit have a matrix. Ratio: of total "
+    "Totals count the lights for which both the method and lightfit have a map. Ratio: of total "
     "to\n"
     "lightfit's. Mean: geometric mean over the lights of (wrong + 1) / (wrong of lightfit + 1), "
-    "and "
-    "of\n"
+    "and of\n"
     "energy / energy of lightfit. Better: lights with fewer wrong pixels than lightfit. Failed: "
     "lights\n"
-    "without a matrix of the method.\n";
+    "without a map of the method.\n";
+constexpr char kPlanLegend[] =
+    "Maps, texels: what the method draws for the light, at most the texels of one map in all. A "
+    "pixel asks\n"
+    "the finest map that holds it, or the one of the method's own rule, and finds the border where "
+    "there is\n"
+    "none. Energy and footprints are those of the map asked; edge pixels that ask none of several "
+    "are in\n"
+    "neither. Foretold: as if all methods asked the finest.\n";
 
 std::string RatioText(const std::optional<double>& ratio) {
   return ratio.has_value() ? absl::StrCat(FigureText(*ratio), "x") : "-";
@@ -103,17 +109,25 @@ void AppendCrawlCells(const std::optional<MapCrawl>& crawl,
 }
 
 bool HasDarkBorder(const LightComparison& light) {
-  return std::any_of(light.maps.begin(), light.maps.end(), [](const ComparedMap& map) {
-    return map.status.ok() && map.border == Border::kDark;
+  return std::any_of(light.rows.begin(), light.rows.end(), [](const ComparedRow& row) {
+    return row.status.ok() && row.border() == Border::kDark;
   });
 }
 
+bool HasTruth(const CompareHeading& heading) { return heading.screen_width > 0; }
+bool HasCrawl(const CompareHeading& heading) { return !heading.next.empty(); }
+
 // "sun: 262266 pixels lit ...", the table, the notes.
-std::string LightText(const LightComparison& light, bool has_truth, bool has_crawl) {
+std::string LightText(const CompareHeading& heading, const LightComparison& light) {
+  const bool has_truth = HasTruth(heading), has_crawl = HasCrawl(heading);
   Table table;
   table.AddColumn("", "method");
   const bool has_border = HasDarkBorder(light);
   if (has_border) table.AddColumn("", "border");
+  if (heading.has_plans) {
+    table.AddColumn("", "maps");
+    table.AddColumn("", "texels");
+  }
   if (has_truth) {
     table.AddColumn("wrong pixels", "ideal");
     table.AddColumn("wrong pixels", "practical");
@@ -128,29 +142,33 @@ std::string LightText(const LightComparison& light, bool has_truth, bool has_cra
   table.AddColumn("footprint", "worst");
   if (has_crawl) AddCrawlColumns(has_truth, &table);
   Notes notes;
-  for (const ComparedMap& map : light.maps) {
-    if (!map.status.ok()) {
-      table.AddRow({map.name, "no matrix, see below"});
-      notes.Add(map.name, std::string(map.status.message()));
+  for (const ComparedRow& row : light.rows) {
+    if (!row.status.ok()) {
+      table.AddRow({row.name, heading.has_plans ? "no maps, see below" : "no matrix, see below"});
+      notes.Add(row.name, std::string(row.status.message()));
       continue;
     }
-    if (!map.note.empty()) notes.Add(map.name, map.note);
-    std::vector<std::string> cells = {map.name};
-    if (has_border) cells.emplace_back(BorderName(map.border));
-    if (has_truth) {
-      cells.push_back(absl::StrCat(map.wrong->ideal));
-      cells.push_back(absl::StrCat(map.wrong->practical));
-      cells.push_back(RatioText(WrongRatio(map, light.lightfit(), &WrongPixels::ideal)));
-      cells.push_back(RatioText(WrongRatio(map, light.lightfit(), &WrongPixels::practical)));
-      cells.push_back(absl::StrCat(map.wrong->outside));
+    if (!row.note.empty()) notes.Add(row.name, row.note);
+    std::vector<std::string> cells = {row.name};
+    if (has_border) cells.emplace_back(BorderName(row.border()));
+    if (heading.has_plans) {
+      cells.push_back(absl::StrCat(NumMaps(row.drawn)));
+      cells.push_back(absl::StrCat(NumTexels(row.drawn)));
     }
-    cells.push_back(map.foretold.has_value() ? PercentText(*map.foretold) : "-");
-    const bool measured = map.figures.has_value();
-    cells.push_back(measured ? FigureText(map.figures->energy) : "-");
-    cells.push_back(RatioText(EnergyRatio(map, light.lightfit())));
-    cells.push_back(measured ? FigureText(map.figures->footprint.rms) : "-");
-    cells.push_back(measured ? FigureText(map.figures->footprint.worst) : "-");
-    if (has_crawl) AppendCrawlCells(map.crawl, has_truth, &cells);
+    if (has_truth) {
+      cells.push_back(absl::StrCat(row.wrong->ideal));
+      cells.push_back(absl::StrCat(row.wrong->practical));
+      cells.push_back(RatioText(WrongRatio(row, light.lightfit(), &WrongPixels::ideal)));
+      cells.push_back(RatioText(WrongRatio(row, light.lightfit(), &WrongPixels::practical)));
+      cells.push_back(absl::StrCat(row.wrong->outside));
+    }
+    cells.push_back(row.foretold.has_value() ? PercentText(*row.foretold) : "-");
+    const bool measured = row.figures.has_value();
+    cells.push_back(measured ? FigureText(row.figures->energy) : "-");
+    cells.push_back(RatioText(EnergyRatio(row, light.lightfit())));
+    cells.push_back(measured ? FigureText(row.figures->footprint.rms) : "-");
+    cells.push_back(measured ? FigureText(row.figures->footprint.worst) : "-");
+    if (has_crawl) AppendCrawlCells(row.crawl, has_truth, &cells);
     table.AddRow(std::move(cells));
   }
   std::string title = absl::StrCat(light.light.name, ": ");
@@ -174,9 +192,11 @@ void AppendPixelCells(const std::optional<MethodTotals::Pixels>& pixels,
   cells->push_back(absl::StrCat(pixels->num_wins));
 }
 
-std::string TotalsText(absl::Span<const LightComparison> lights, bool has_truth, bool has_crawl) {
+std::string TotalsText(const CompareHeading& heading, absl::Span<const LightComparison> lights) {
+  const bool has_truth = HasTruth(heading), has_crawl = HasCrawl(heading);
   Table table;
   table.AddColumn("", "method");
+  if (heading.has_plans) table.AddColumn("maps", "mean");
   if (has_truth) {
     for (const char* bias : {"wrong pixels, ideal bias", "wrong pixels, practical bias"}) {
       for (const char* name : {"total", "ratio", "mean", "better"}) {
@@ -192,6 +212,9 @@ std::string TotalsText(absl::Span<const LightComparison> lights, bool has_truth,
   if (has_border) table.AddColumn("lights", "dark");
   for (const MethodTotals& totals : TotalsOf(lights)) {
     std::vector<std::string> cells = {totals.name};
+    if (heading.has_plans) {
+      cells.push_back(totals.num_lights > 0 ? FigureText(totals.mean_maps) : "-");
+    }
     if (has_truth) {
       AppendPixelCells(totals.ideal, &cells);
       AppendPixelCells(totals.practical, &cells);
@@ -206,77 +229,16 @@ std::string TotalsText(absl::Span<const LightComparison> lights, bool has_truth,
   return absl::StrCat(lights.size(), " lights\n\n", table.Text());
 }
 
-void AppendCsvCrawl(const std::optional<MapCrawl>& crawl, std::string* csv) {
-  if (crawl.has_value()) {
-    absl::StrAppend(csv,
-                    CsvNumber(crawl->points.phase_drift_texels),
-                    ",",
-                    CsvNumber(crawl->points.moved_share),
-                    ",",
-                    CsvNumber(crawl->points.edge_crawl_px),
-                    ",");
-  } else {
-    absl::StrAppend(csv, ",,,");
-  }
-  if (crawl.has_value() && crawl->flicker.has_value()) {
-    const Flicker& flicker = *crawl->flicker;
-    absl::StrAppend(csv, flicker.judged, ",", flicker.flips_ideal, ",", flicker.flips_practical);
-    absl::StrAppend(csv, ",");
-  } else {
-    absl::StrAppend(csv, ",,,");
-  }
-}
-
-void AppendCsvRow(const LightComparison& light, const ComparedMap& map, std::string* csv) {
-  const bool is_point = light.light.kind == Light::Kind::kPoint;
-  const Eigen::Vector3d& where = is_point ? light.light.position : light.light.direction;
-  absl::StrAppend(csv, CsvField(light.light.name), is_point ? ",point," : ",sun,");
-  for (const double value : where) absl::StrAppend(csv, CsvNumber(value), ",");
-  absl::StrAppend(csv, CsvField(map.name), map.status.ok() ? ",ok," : ",failed,");
-  if (map.wrong.has_value()) {
-    absl::StrAppend(csv,
-                    map.wrong->ideal,
-                    ",",
-                    map.wrong->practical,
-                    ",",
-                    CsvNumber(map.wrong->practical_weighted),
-                    ",",
-                    map.wrong->outside,
-                    ",");
-  } else {
-    absl::StrAppend(csv, ",,,,");
-  }
-  const ComparedMap& lightfit = light.lightfit();
-  absl::StrAppend(csv, CsvNumber(WrongRatio(map, lightfit, &WrongPixels::ideal)), ",");
-  absl::StrAppend(csv, CsvNumber(WrongRatio(map, lightfit, &WrongPixels::practical)), ",");
-  if (map.figures.has_value()) {
-    const FootprintStatistics& footprint = map.figures->footprint;
-    absl::StrAppend(csv,
-                    CsvNumber(map.figures->energy),
-                    ",",
-                    CsvNumber(EnergyRatio(map, lightfit)),
-                    ",",
-                    CsvNumber(footprint.rms),
-                    ",",
-                    CsvNumber(footprint.worst),
-                    ",");
-  } else {
-    absl::StrAppend(csv, ",,,,");
-  }
-  absl::StrAppend(csv, CsvNumber(map.foretold), ",");
-  AppendCsvCrawl(map.crawl, csv);
-  absl::StrAppend(csv, light.samples.used, ",", light.lighting.lit, ",", light.lighting.shadowed);
-  absl::StrAppend(csv, ",", map.status.ok() ? BorderName(map.border) : "");
-  absl::StrAppend(
-      csv, ",", CsvField(map.status.ok() ? map.note : std::string(map.status.message())), "\n");
-}
-
 }  // namespace
+
+std::string MapText(MapSize map) {
+  return absl::StrFormat("map %d x %d texels", map.width, map.height);
+}
 
 std::string CompareReportText(const CompareHeading& heading,
                               absl::Span<const LightComparison> lights,
                               bool per_light) {
-  const bool has_truth = heading.screen_width > 0;
+  const bool has_truth = HasTruth(heading);
   const bool is_mean = has_truth && heading.phases > 1;
   std::string text = absl::StrCat(heading.source, ": ");
   if (has_truth) {
@@ -284,45 +246,32 @@ std::string CompareReportText(const CompareHeading& heading,
         &text, "screen %d x %d pixels, ", heading.screen_width, heading.screen_height);
   }
   absl::StrAppendFormat(&text,
-                        "read-back %d x %d pixels; map %d x %d texels%s\nlightfit: %s\n",
+                        "read-back %d x %d pixels; %s%s\nlightfit: %s\n",
                         heading.readback_width,
                         heading.readback_height,
-                        heading.map.width,
-                        heading.map.height,
+                        heading.maps,
                         is_mean ? absl::StrCat(", mean of ", heading.phases, " phases") : "",
                         heading.fit);
-  const bool has_crawl = !heading.next.empty();
+  const bool has_crawl = HasCrawl(heading);
   if (has_crawl) absl::StrAppend(&text, "crawl: to the next frame, ", heading.next, "\n");
   const bool totals = lights.size() != 1;
   const bool has_border = std::any_of(lights.begin(), lights.end(), HasDarkBorder);
   if (!totals || per_light) {
     for (const LightComparison& light : lights) {
-      absl::StrAppend(&text, "\n", LightText(light, has_truth, has_crawl));
+      absl::StrAppend(&text, "\n", LightText(heading, light));
     }
   }
-  if (totals) absl::StrAppend(&text, "\n", TotalsText(lights, has_truth, has_crawl));
+  if (totals) absl::StrAppend(&text, "\n", TotalsText(heading, lights));
   if (has_truth)
     absl::StrAppend(&text, kPixelLegend);
   else
     absl::StrAppend(&text, "\nA read-back alone has no truth to count wrong pixels by.\n");
   if (is_mean) absl::StrAppendFormat(&text, kPhaseLegend, heading.phases);
   if (has_border) absl::StrAppend(&text, kBorderLegend);
-  absl::StrAppend(&text, kFigureLegend);
+  absl::StrAppend(&text, kFigureLegend, heading.has_plans ? kPlanLegend : "");
   if (has_crawl) absl::StrAppend(&text, kCrawlLegend, has_truth ? kFlipLegend : "");
   if (totals) absl::StrAppend(&text, kTotalLegend, has_border ? kDarkLegend : "");
   return text;
-}
-
-std::string CompareCsv(absl::Span<const LightComparison> lights) {
-  std::string csv =
-      "light,kind,x,y,z,method,status,wrong_ideal,wrong_practical,wrong_practical_weighted,"
-      "wrong_outside,ratio_ideal,ratio_practical,energy,energy_ratio,footprint_rms,"
-      "footprint_worst,foretold_share,crawl_texels,crawl_moved_share,crawl_edge_px,"
-      "flips_judged,flips_ideal,flips_practical,samples,pixels_lit,pixels_shadowed,border,note\n";
-  for (const LightComparison& light : lights) {
-    for (const ComparedMap& map : light.maps) AppendCsvRow(light, map, &csv);
-  }
-  return csv;
 }
 
 }  // namespace lightfit::cli

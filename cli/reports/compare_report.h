@@ -1,6 +1,6 @@
 // cli/reports/compare_report.h
 //
-// A comparison in words and figures: for the terminal, and as comma-separated values.
+// A comparison in words and figures, for the terminal.
 #pragma once
 
 #include <string>
@@ -12,23 +12,24 @@
 
 namespace lightfit::cli {
 
+// "map 400 x 400 texels".
+std::string MapText(MapSize map);
+
 // What is above the tables.
 struct CompareHeading {
   std::string source;                       // the scene or the read-back
   int screen_width = 0, screen_height = 0;  // 0: only a read-back is known
   int readback_width = 0, readback_height = 0;
-  MapSize map;
-  int phases = 1;    // of the counts of wrong pixels
-  std::string fit;   // of the row "lightfit", see MethodText()
-  std::string next;  // the frame that crawl is measured to; empty: none is
+  std::string maps;        // what every method may spend: MapText(), PlanSizeText()
+  bool has_plans = false;  // whether methods may have several maps
+  int phases = 1;          // of the counts of wrong pixels
+  std::string fit;         // of the row "lightfit", see MethodText(), PlanMethodText()
+  std::string next;        // the frame that crawl is measured to; empty: none is
 };
 
 // One light: a table of it. More: one table over all lights, after one of each if `per_light`.
 std::string CompareReportText(const CompareHeading& heading,
                               absl::Span<const LightComparison> lights,
                               bool per_light);
-
-// A line of names, then one line for each light and method. Empty fields where there is no figure.
-std::string CompareCsv(absl::Span<const LightComparison> lights);
 
 }  // namespace lightfit::cli

@@ -26,16 +26,15 @@ std::string ShareText(const std::optional<double>& share) {
 std::string TuneReportText(const CompareHeading& heading,
                            const TuneOptions& options,
                            absl::Span<const TunedLight> lights) {
-  std::string text = absl::StrFormat(
-      "%s: screen %d x %d pixels, read-back %d x %d pixels; map %d x %d texels\nfit: %s\n\n",
-      heading.source,
-      heading.screen_width,
-      heading.screen_height,
-      heading.readback_width,
-      heading.readback_height,
-      heading.map.width,
-      heading.map.height,
-      heading.fit);
+  std::string text =
+      absl::StrFormat("%s: screen %d x %d pixels, read-back %d x %d pixels; %s\nfit: %s\n\n",
+                      heading.source,
+                      heading.screen_width,
+                      heading.screen_height,
+                      heading.readback_width,
+                      heading.readback_height,
+                      heading.maps,
+                      heading.fit);
   Table table;
   table.AddColumn("", "light");
   for (const char* group : {"wrong pixels", "at other phases"}) {

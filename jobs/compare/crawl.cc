@@ -4,6 +4,10 @@
 #include <cmath>
 #include <utility>
 
+#include "jobs/schemes/judge_maps.h"
+#include "optimizer/figures/stability.h"
+#include "partition/tracking/plan_crawl.h"
+
 namespace lightfit {
 namespace {
 
@@ -36,6 +40,26 @@ void Pool(const MapCrawl& crawl, MapCrawl* sum) {
   sum->flicker->flips_practical += crawl.flicker->flips_practical;
 }
 
+absl::StatusOr<Crawl> CrawlOfPoints(const PresentMaps& present,
+                                    const LitStage& next_frame,
+                                    const SchemeMaps& next_drawn) {
+  const Surfaces* surfaces = next_frame.surfaces->ok() ? &**next_frame.surfaces : nullptr;
+  const PlanMap* only = OnlyMap(present.drawn);
+  const PlanMap* next_only = OnlyMap(next_drawn);
+  if (only != nullptr && next_only != nullptr) {
+    return MeasureCrawl({present.frame.readback, only->map_from_world, only->size},
+                        {next_frame.readback, next_only->map_from_world, next_only->size, surfaces},
+                        next_frame.light);
+  }
+  const Plan* plan = PlanOf(present.drawn);
+  const Plan* next_plan = PlanOf(next_drawn);
+  if (plan == nullptr || next_plan == nullptr) return Crawl();
+  return MeasurePlanCrawl({present.frame.readback, *plan},
+                          {next_frame.readback, *next_plan, surfaces},
+                          next_frame.light,
+                          next_drawn.guard_texels);
+}
+
 }  // namespace
 
 absl::StatusOr<NextFrame> MakeNextFrame(const CompareStage& present, CompareStage next) {
@@ -64,25 +88,19 @@ std::optional<double> IdealFlipShare(const MapCrawl& crawl) {
          static_cast<double>(crawl.flicker->judged);
 }
 
-absl::StatusOr<MapCrawl> MeasureMapCrawl(const PresentMap& present,
+absl::StatusOr<MapCrawl> MeasureMapCrawl(const PresentMaps& present,
                                          const NextFrame& next,
                                          const LitStage& next_frame,
-                                         const JudgedMap& next_map,
+                                         const SchemeMaps& next_drawn,
                                          const JudgeOptions& judge) {
-  const absl::StatusOr<Crawl> points =
-      MeasureCrawl({present.frame.readback, present.map_from_world, next_map.size},
-                   {next_frame.readback,
-                    next_map.map_from_world,
-                    next_map.size,
-                    next_frame.surfaces->ok() ? &**next_frame.surfaces : nullptr},
-                   next_frame.light);
+  const absl::StatusOr<Crawl> points = CrawlOfPoints(present, next_frame, next_drawn);
   if (!points.ok()) return points.status();
   MapCrawl crawl;
   crawl.points = *points;
   const CompareStage& stage = *present.frame.stage;
   if (!stage.has_truth()) return crawl;
-  const absl::StatusOr<ShadowImage> next_shadows = JudgeFirstPhase(
-      *stage.caster, stage.screen, present.truth, present.frame.light, next_map, judge);
+  const absl::StatusOr<ShadowImage> next_shadows = JudgeMapsFirstPhase(
+      *stage.caster, stage.screen, present.truth, present.frame.light, next_drawn, judge);
   if (!next_shadows.ok()) return next_shadows.status();
   crawl.flicker = CountFlips(present.shadows, *next_shadows, next.seen);
   return crawl;

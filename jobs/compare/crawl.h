@@ -1,11 +1,10 @@
 // jobs/compare/crawl.h
 //
 // How much the shadows of a method crawl to the next frame: what `lightfit compare --crawl` adds.
-// In:   the next frame as a CompareStage; the method's matrix in either frame.
+// In:   the next frame as a CompareStage; the method's maps in either frame.
 // Out:  MapCrawl of one method and light, and of many lights together.
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
 #include "jobs/compare/stage.h"
+#include "jobs/schemes/scheme.h"
 #include "optimizer/figures/stability.h"
 #include "render/flicker.h"
 
@@ -41,19 +41,20 @@ struct MapCrawl {
 // Of the pixels seen in both frames; absent without truth or without such pixels.
 std::optional<double> IdealFlipShare(const MapCrawl& crawl);
 
-// A light in the present frame, and a map of it with its shadows there (empty without truth).
-struct PresentMap {
+// A light in the present frame, and maps of it with their shadows there (empty without truth).
+struct PresentMaps {
   const LitStage& frame;
   absl::Span<const Lighting> truth;
-  const Eigen::Matrix4d& map_from_world;
+  const SchemeMaps& drawn;
   const ShadowImage& shadows;
 };
 
-// From that map to the light's in the next frame, which is of the same size.
-absl::StatusOr<MapCrawl> MeasureMapCrawl(const PresentMap& present,
+// From those maps to the light's in the next frame, by the same scheme. There are no points of maps
+// that are no matrices.
+absl::StatusOr<MapCrawl> MeasureMapCrawl(const PresentMaps& present,
                                          const NextFrame& next,
                                          const LitStage& next_frame,
-                                         const JudgedMap& next_map,
+                                         const SchemeMaps& next_drawn,
                                          const JudgeOptions& judge);
 
 // As if all points, and all pixels, were one light's. Nothing from nothing.

@@ -1,12 +1,14 @@
 #include "jobs/compare/json.h"
 
 #include "base/text_file.h"
+#include "jobs/compare/maps_proto.h"
 #include "jobs/compare/totals.h"
 #include "wire/camera_proto.h"
 #include "wire/crawl_proto.h"
 #include "wire/light_proto.h"
 #include "wire/matrix_proto.h"
 #include "wire/options_proto.h"
+#include "wire/plan_proto.h"
 #include "wire/proto_json.h"
 #include "wire/result_json.h"
 
@@ -31,36 +33,43 @@ v1::Crawl MapCrawlToProto(const MapCrawl& crawl) {
   return proto;
 }
 
-void SetRatios(const ComparedMap& map, const ComparedMap& lightfit, v1::MethodComparison* proto) {
-  const std::optional<double> energy = EnergyRatio(map, lightfit);
+void SetRatios(const ComparedRow& row, const ComparedRow& lightfit, v1::MethodComparison* proto) {
+  const std::optional<double> energy = EnergyRatio(row, lightfit);
   if (energy.has_value()) proto->set_energy_ratio(*energy);
-  const std::optional<double> ideal = WrongRatio(map, lightfit, &WrongPixels::ideal);
+  const std::optional<double> ideal = WrongRatio(row, lightfit, &WrongPixels::ideal);
   if (ideal.has_value()) proto->set_ideal_ratio(*ideal);
-  const std::optional<double> practical = WrongRatio(map, lightfit, &WrongPixels::practical);
+  const std::optional<double> practical = WrongRatio(row, lightfit, &WrongPixels::practical);
   if (practical.has_value()) proto->set_practical_ratio(*practical);
 }
 
-v1::MethodComparison MethodToProto(const ComparedMap& map, const ComparedMap& lightfit) {
+v1::MethodComparison MethodToProto(const ComparedRow& row,
+                                   const ComparedRow& lightfit,
+                                   bool with_maps) {
   v1::MethodComparison proto;
-  proto.set_method(map.name);
-  proto.mutable_status()->set_code(static_cast<int>(map.status.code()));
-  proto.mutable_status()->set_message(std::string(map.status.message()));
-  proto.set_note(map.note);
-  if (!map.status.ok()) return proto;
-  *proto.mutable_map_from_world() = MatrixToProto(map.map_from_world);
-  proto.set_border(BorderToProto(map.border));
-  if (map.figures.has_value()) {
-    proto.set_energy(map.figures->energy);
-    *proto.mutable_footprint() = FootprintToProto(map.figures->footprint, true);
+  proto.set_method(row.name);
+  proto.mutable_status()->set_code(static_cast<int>(row.status.code()));
+  proto.mutable_status()->set_message(std::string(row.status.message()));
+  proto.set_note(row.note);
+  if (!row.status.ok()) return proto;
+  if (const PlanMap* only = OnlyMap(row.drawn)) {
+    *proto.mutable_map_from_world() = MatrixToProto(only->map_from_world);
   }
-  if (map.wrong.has_value()) *proto.mutable_wrong() = WrongPixelsToProto(*map.wrong);
-  if (map.foretold.has_value()) proto.set_foretold_share(*map.foretold);
-  SetRatios(map, lightfit, &proto);
-  if (map.crawl.has_value()) *proto.mutable_crawl() = MapCrawlToProto(*map.crawl);
+  if (with_maps) *proto.mutable_maps() = MapsToProto(row.drawn);
+  proto.set_border(BorderToProto(row.border()));
+  if (row.figures.has_value()) {
+    proto.set_energy(row.figures->energy);
+    *proto.mutable_footprint() = FootprintToProto(row.figures->footprint, true);
+  }
+  if (row.wrong.has_value()) *proto.mutable_wrong() = WrongPixelsToProto(*row.wrong);
+  if (row.foretold.has_value()) proto.set_foretold_share(*row.foretold);
+  SetRatios(row, lightfit, &proto);
+  if (row.crawl.has_value()) *proto.mutable_crawl() = MapCrawlToProto(*row.crawl);
   return proto;
 }
 
-v1::LightComparison LightComparisonToProto(const LightComparison& light, bool has_truth) {
+v1::LightComparison LightComparisonToProto(const LightComparison& light,
+                                           bool has_truth,
+                                           bool with_maps) {
   v1::LightComparison proto;
   proto.set_name(light.light.name);
   *proto.mutable_light() = LightToProto(light.light);
@@ -71,8 +80,8 @@ v1::LightComparison LightComparisonToProto(const LightComparison& light, bool ha
     proto.mutable_lighting()->set_shadowed(light.lighting.shadowed);
   }
   *proto.mutable_samples() = SampleCountsToProto(light.samples);
-  for (const ComparedMap& map : light.maps) {
-    *proto.add_methods() = MethodToProto(map, light.lightfit());
+  for (const ComparedRow& row : light.rows) {
+    *proto.add_methods() = MethodToProto(row, light.lightfit(), with_maps);
   }
   return proto;
 }
@@ -126,8 +135,12 @@ v1::Comparison ComparisonToProto(const std::string& source,
   proto.mutable_map()->set_width(options.map.width);
   proto.mutable_map()->set_height(options.map.height);
   *proto.mutable_options() = FitOptionsToProto(options.fit);
+  if (options.plan.has_value()) {
+    *proto.mutable_plan_options() = PlanOptionsToProto(*options.plan);
+  }
   for (const LightComparison& light : lights) {
-    *proto.add_lights() = LightComparisonToProto(light, stage.has_truth());
+    *proto.add_lights() =
+        LightComparisonToProto(light, stage.has_truth(), options.plan.has_value());
   }
   for (const MethodTotals& totals : TotalsOf(lights)) *proto.add_totals() = TotalsToProto(totals);
   return proto;

@@ -1,28 +1,31 @@
 #include "jobs/compare/rows.h"
 
 #include <Eigen/LU>
+#include <array>
 #include <cmath>
 #include <utility>
 
+#include "absl/functional/function_ref.h"
 #include "absl/strings/str_format.h"
 #include "geometry/homography.h"
 #include "jobs/fit_comparison.h"
+#include "jobs/schemes/fitted.h"
+#include "jobs/schemes/judge_maps.h"
+#include "jobs/schemes/published.h"
+#include "jobs/schemes/shipped.h"
 #include "methods/method.h"
 #include "optimizer/figures/foretell.h"
-#include "optimizer/fit.h"
+#include "partition/evaluate_plan.h"
 
 namespace lightfit {
 namespace {
 
-void AddNote(const std::string& note, ComparedMap* row) {
+void AddNote(const std::string& note, ComparedRow* row) {
   row->note += (row->note.empty() ? "" : "; ") + note;
 }
 
-// Sets the figures, or the note that says why there are none.
-void Measure(const LightView& view, const Eigen::Matrix3d& map_from_ray, ComparedMap* row) {
-  if (view.samples.size() == 0) {
-    return AddNote("no shadow edge in the read-back to measure by", row);
-  }
+// Sets the figures of a single map, or the note that says why there are none.
+void MeasureOne(const LightView& view, const Eigen::Matrix3d& map_from_ray, ComparedRow* row) {
   const Eigen::Matrix3d map_from_normalized = map_from_ray * view.normalized_from_ray().inverse();
   Figures figures =
       MeasureFigures(view.samples, map_from_normalized, Metric::kL2, /*along_edge_share=*/1.0);
@@ -39,48 +42,74 @@ void Measure(const LightView& view, const Eigen::Matrix3d& map_from_ray, Compare
   row->figures = figures;
 }
 
-struct RowMap {
-  Eigen::Matrix4d map_from_world;
-  Border border = Border::kLit;
-  std::string note = "";  // as MethodMap::note
-};
-
-// How a method gets its map from what is known of one frame.
-using SetUp = std::function<absl::StatusOr<RowMap>(const LitStage&)>;
-
-SetUp SetUpOf(Method method, MapSize map) {
-  return [method, map](const LitStage& frame) -> absl::StatusOr<RowMap> {
-    MethodInput input = frame.stage->view;
-    input.light = frame.light;
-    input.map = map;
-    const absl::StatusOr<MethodMap> set_up = SetUpMap(method, input);
-    if (!set_up.ok()) return set_up.status();
-    return RowMap{set_up->map_from_world, Border::kLit, set_up->note};
-  };
+// The same of several maps.
+void MeasureSeveral(const LightView& view,
+                    const Plan& plan,
+                    const FitOptions& fit,
+                    ComparedRow* row) {
+  FitOptions options = FigureOptions(fit);
+  options.metric = Metric::kL2;
+  options.along_edge_share = 1.0;
+  const absl::StatusOr<Figures> figures =
+      EvaluatePlan(view, plan, options, row->drawn.guard_texels);
+  if (!figures.ok()) {
+    return AddNote("no energy: " + std::string(figures.status().message()), row);
+  }
+  row->figures = *figures;
 }
 
-SetUp SetUpOf(const FitOptions& options, MapSize map) {
-  return [options, map](const LitStage& frame) -> absl::StatusOr<RowMap> {
-    if (!frame.surfaces->ok()) return frame.surfaces->status();
-    const absl::StatusOr<LightMatrix> fit = FitLight(**frame.surfaces, frame.light, map, options);
-    if (!fit.ok()) return fit.status();
-    return RowMap{fit->map_from_world, fit->border};
-  };
+std::optional<double> Foretell(const LitStage& frame, const Plan& plan) {
+  std::vector<SizedMatrix> maps;
+  for (const PlanMap& map : plan.maps) maps.push_back({map.map_from_world, map.size});
+  const absl::StatusOr<double> share =
+      ForetellWrongShare(frame.readback, frame.light, maps, {}, plan.border);
+  return share.ok() ? std::optional<double>(*share) : std::nullopt;
 }
 
-// What has been set up for `present` already is not set up there again.
-SetUp Known(const LitStage& present, const absl::StatusOr<RowMap>& there, const SetUp& elsewhere) {
-  return [&present, &there, elsewhere](const LitStage& frame) {
-    return &frame == &present ? there : elsewhere(frame);
-  };
+absl::StatusOr<SchemeMaps> SetUpIn(const LitStage& frame, const Scheme& scheme) {
+  return scheme.set_up({frame.stage->view, *frame.surfaces, frame.light});
 }
 
-SetUp SetUpOf(const GivenMatrices& given) {
-  return [&given](const LitStage& frame) -> absl::StatusOr<RowMap> {
-    const absl::StatusOr<GivenMatrix> matrix = given.Of(frame.light.name);
-    if (!matrix.ok()) return matrix.status();
-    return RowMap{matrix->map_from_world, matrix->border};
+Scheme GivenScheme(const GivenMatrices& given, MapSize map) {
+  return {given.name, [&given, map](const SchemeInput& input) -> absl::StatusOr<SchemeMaps> {
+            const absl::StatusOr<GivenMatrix> matrix = given.Of(input.light.name);
+            if (!matrix.ok()) return matrix.status();
+            Plan plan;
+            plan.light_name = input.light.name;
+            plan.border = matrix->border;
+            plan.maps.emplace_back();
+            plan.maps[0].map_from_world = matrix->map_from_world;
+            plan.maps[0].size = map;
+            return SchemeMaps{std::move(plan)};
+          }};
+}
+
+// All rows. Refers to the options.
+std::vector<Scheme> SchemesOf(const CompareOptions& options) {
+  const double guard_texels = options.plan.has_value() ? options.plan->guard_texels : 0.0;
+  SchemeBudget budget = {options.map, 1, guard_texels};
+  const auto one_map = [&](const char* name, const FitOptions& fit) {
+    return FittedScheme(name, OneMapOf(fit, options.map, guard_texels));
   };
+  std::vector<Scheme> schemes;
+  for (const Method method : AllMethods()) schemes.push_back(MethodScheme(method, budget));
+  schemes.push_back(one_map(kAsPublishedName, FitOptions::AsPublished(options.fit)));
+  schemes.push_back(one_map(kLineName, LineOptions(options.fit)));
+  for (const GivenMatrices& given : options.given) {
+    schemes.push_back(GivenScheme(given, options.map));
+  }
+  if (!options.plan.has_value()) {
+    schemes.push_back(one_map(kLightfitName, options.fit));
+    return schemes;
+  }
+  schemes.push_back(one_map(kOneMapName, options.fit));
+  budget.num_maps = options.plan->max_maps;
+  for (std::vector<Scheme>& more :
+       std::array{SlicesSchemes(budget), PublishedSchemes(budget), ShippedSchemes(budget)}) {
+    for (Scheme& scheme : more) schemes.push_back(std::move(scheme));
+  }
+  schemes.push_back(FittedScheme(kLightfitName, *options.plan));
+  return schemes;
 }
 
 // Fills in the rows of one light.
@@ -94,58 +123,74 @@ class RowMaker {
     if (options.next != nullptr) next_frame_ = Lit(options.next->stage, comparison->light);
   }
 
-  void Add(const std::string& name, const SetUp& set_up) {
-    if (options_.before_row) options_.before_row(name);
-    comparison_->maps.emplace_back();
-    ComparedMap& row = comparison_->maps.back();
-    row.name = name;
-    ShadowImage shadows;
-    row.status = AddPresent(set_up, &row, &shadows);
-    if (!row.status.ok()) return;
-    if (options_.next != nullptr) AddCrawl(set_up, shadows, &row);
-    if (options_.keep_images) row.image = std::move(shadows);
+  void Add(const Scheme& scheme) {
+    Add(scheme, [this, &scheme] { return SetUpIn(frame_, scheme); });
+  }
+
+  // Of what has been set up in the present frame already.
+  void Add(const Scheme& scheme, const absl::StatusOr<SchemeMaps>& drawn) {
+    Add(scheme, [&drawn] { return drawn; });
   }
 
  private:
-  absl::Status AddPresent(const SetUp& set_up, ComparedMap* row, ShadowImage* shadows) {
-    const absl::StatusOr<RowMap> map = set_up(frame_);
-    if (!map.ok()) return map.status();
-    row->note = map->note;
+  using Drawn = absl::FunctionRef<absl::StatusOr<SchemeMaps>()>;
+
+  void Add(const Scheme& scheme, Drawn drawn) {
+    if (options_.before_row) options_.before_row(scheme.name);
+    ComparedRow& row = comparison_->rows.emplace_back();
+    row.name = scheme.name;
+    ShadowImage shadows;
+    row.status = AddPresent(drawn(), &row, &shadows);
+    if (!row.status.ok()) return;
+    if (options_.next != nullptr) AddCrawl(scheme, shadows, &row);
+    if (options_.keep_images) row.image = std::move(shadows);
+  }
+
+  absl::Status AddPresent(absl::StatusOr<SchemeMaps> drawn,
+                          ComparedRow* row,
+                          ShadowImage* shadows) {
+    if (!drawn.ok()) return drawn.status();
     const Light& light = frame_.light;
-    const absl::StatusOr<Eigen::Matrix3d> map_from_ray = MapFromRay(map->map_from_world, light);
-    if (!map_from_ray.ok()) return map_from_ray.status();
-    row->map_from_world = map->map_from_world;
-    row->border = map->border;
-    if (view_.ok()) Measure(*view_, *map_from_ray, row);
-    const absl::StatusOr<double> foretold = ForetellWrongShare(
-        frame_.readback, light, row->map_from_world, options_.map, {}, row->border);
-    if (foretold.ok()) row->foretold = *foretold;
+    if (absl::Status status = ValidateMaps(*drawn, light); !status.ok()) return status;
+    row->note = drawn->note;
+    row->drawn = *std::move(drawn);
+    AddFigures(row);
     const CompareStage& stage = *frame_.stage;
     if (!stage.has_truth()) return absl::OkStatus();
-    absl::StatusOr<ShadowImage> image =
-        JudgeMatrix(*stage.caster,
-                    stage.screen,
-                    comparison_->truth,
-                    light,
-                    {map->map_from_world, options_.map, map->border},
-                    options_.judge);
+    absl::StatusOr<ShadowImage> image = JudgeMaps(
+        *stage.caster, stage.screen, comparison_->truth, light, row->drawn, options_.judge);
     if (!image.ok()) return image.status();
     row->wrong = image->wrong;
     *shadows = *std::move(image);
     return absl::OkStatus();
   }
 
+  void AddFigures(ComparedRow* row) {
+    const Plan* plan = PlanOf(row->drawn);
+    if (plan == nullptr) {
+      return AddNote("no energy and no forecast, which are of matrices", row);
+    }
+    row->foretold = Foretell(frame_, *plan);
+    if (!view_.ok()) return;
+    if (view_->samples.size() == 0) {
+      return AddNote("no shadow edge in the read-back to measure by", row);
+    }
+    const PlanMap* only = OnlyMap(row->drawn);
+    if (only == nullptr) return MeasureSeveral(*view_, *plan, options_.fit, row);
+    MeasureOne(*view_, *MapFromRay(only->map_from_world, frame_.light), row);
+  }
+
   // Sets the crawl, or the note that says why there is none.
-  void AddCrawl(const SetUp& set_up, const ShadowImage& shadows, ComparedMap* row) {
+  void AddCrawl(const Scheme& scheme, const ShadowImage& shadows, ComparedRow* row) {
     if (options_.before_row) options_.before_row(row->name + ", next frame");
-    const absl::StatusOr<RowMap> map = set_up(next_frame_);
+    const absl::StatusOr<SchemeMaps> next = SetUpIn(next_frame_, scheme);
     const absl::StatusOr<MapCrawl> crawl =
-        map.ok() ? MeasureMapCrawl({frame_, comparison_->truth, row->map_from_world, shadows},
-                                   *options_.next,
-                                   next_frame_,
-                                   {map->map_from_world, options_.map, map->border},
-                                   options_.judge)
-                 : map.status();
+        next.ok() ? MeasureMapCrawl({frame_, comparison_->truth, row->drawn, shadows},
+                                    *options_.next,
+                                    next_frame_,
+                                    *next,
+                                    options_.judge)
+                  : next.status();
     if (!crawl.ok()) {
       return AddNote("no crawl, in the next frame: " + std::string(crawl.status().message()), row);
     }
@@ -159,30 +204,24 @@ class RowMaker {
   LightComparison* comparison_;
 };
 
-// Algorithm 1 with normalised rays instead of light space.
-FitOptions LineOptions(const FitOptions& options) {
-  FitOptions line = FitOptions::AsPublished(options);
-  line.ray_space = RaySpace::kNormalized;
-  line.sample_by_sample = false;
-  return line;
-}
-
 }  // namespace
 
-const ComparedMap* LightComparison::Find(absl::string_view name) const {
-  for (const ComparedMap& map : maps) {
-    if (map.name == name) return &map;
+void SetPlan(const PlanOptions& plan, CompareOptions* options) {
+  options->plan = plan;
+  options->fit = plan.fit;
+  options->map = OneMapSize(plan);
+}
+
+const ComparedRow* LightComparison::Find(absl::string_view name) const {
+  for (const ComparedRow& row : rows) {
+    if (row.name == name) return &row;
   }
   return nullptr;
 }
 
-std::vector<std::string> RowNames(const std::vector<GivenMatrices>& given) {
+std::vector<std::string> RowNames(const CompareOptions& options) {
   std::vector<std::string> names;
-  for (const Method method : AllMethods()) names.emplace_back(MethodName(method));
-  names.emplace_back(kAsPublishedName);
-  names.emplace_back(kLineName);
-  for (const GivenMatrices& matrices : given) names.push_back(matrices.name);
-  names.emplace_back(kLightfitName);
+  for (const Scheme& scheme : SchemesOf(options)) names.push_back(scheme.name);
   return names;
 }
 
@@ -199,11 +238,10 @@ LightComparison CompareMaps(const CompareStage& stage,
     comparison.lighting = CountLighting(comparison.truth);
   }
   const LitStage frame = Lit(stage, light);
-  const MapSize map = options.map;
+  const std::vector<Scheme> schemes = SchemesOf(options);
   // First, as its border says which edges every row's figures are over.
-  const SetUp fit = SetUpOf(options.fit, map);
-  const absl::StatusOr<RowMap> fitted = fit(frame);
-  const Border border = fitted.ok() ? fitted->border : Border::kLit;
+  const absl::StatusOr<SchemeMaps> fitted = SetUpIn(frame, schemes.back());
+  const Border border = fitted.ok() ? BorderOf(*fitted) : Border::kLit;
   const absl::StatusOr<LightView> view =
       frame.surfaces->ok()
           ? ViewLight(**frame.surfaces, frame.light, border, FigureOptions(options.fit))
@@ -211,11 +249,8 @@ LightComparison CompareMaps(const CompareStage& stage,
   if (view.ok()) comparison.samples = view->samples.counts;
 
   RowMaker rows(frame, view, options, &comparison);
-  for (const Method method : AllMethods()) rows.Add(MethodName(method), SetUpOf(method, map));
-  rows.Add(kAsPublishedName, SetUpOf(FitOptions::AsPublished(options.fit), map));
-  rows.Add(kLineName, SetUpOf(LineOptions(options.fit), map));
-  for (const GivenMatrices& given : options.given) rows.Add(given.name, SetUpOf(given));
-  rows.Add(kLightfitName, Known(frame, fitted, fit));
+  for (size_t i = 0; i + 1 < schemes.size(); ++i) rows.Add(schemes[i]);
+  rows.Add(schemes.back(), fitted);
   if (!options.keep_images) comparison.truth.clear();
   return comparison;
 }
@@ -225,10 +260,10 @@ LightComparison FailedRows(const Light& light,
                            const CompareOptions& options) {
   LightComparison comparison;
   comparison.light = light;
-  for (const std::string& name : RowNames(options.given)) {
-    comparison.maps.emplace_back();
-    comparison.maps.back().name = name;
-    comparison.maps.back().status = status;
+  for (const std::string& name : RowNames(options)) {
+    comparison.rows.emplace_back();
+    comparison.rows.back().name = name;
+    comparison.rows.back().status = status;
   }
   return comparison;
 }

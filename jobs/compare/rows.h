@@ -1,17 +1,18 @@
 // jobs/compare/rows.h
 //
-// Every way to set up a shadow map, side by side on one light: the rows of `lightfit compare`.
+// Every way to set up the shadow maps of a light, side by side: the rows of `lightfit compare`.
 // In:   a CompareStage (a scene that a camera sees, or a read-back alone), a light, options.
-// Out:  LightComparison: of each method the matrix, its energy, footprints, wrong pixels
-//       and crawl.
+// Out:  LightComparison: of each method its maps, their energy, footprints, wrong pixels and
+//       crawl.
 //
 // Rows, in this order: the published set-ups of methods/ by their names; "as-published", Chong and
 // Gortler's Algorithm 1 to the letter; "line", the same in normalised rays; matrices given from
-// outside; "lightfit", the fit that the options ask for. A method that fails has a row that says
-// why.
+// outside; where several maps are asked for "one map", our own, then the published plans and those
+// that engines ship (jobs/schemes), all of as many texels; "lightfit", the fit that the options ask
+// for. A method that fails has a row that says why.
 #pragma once
 
-#include <Eigen/Core>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -25,9 +26,10 @@
 #include "io/given_matrices.h"
 #include "jobs/compare/crawl.h"
 #include "jobs/compare/stage.h"
+#include "jobs/schemes/scheme.h"
 #include "optimizer/figures/figures.h"
 #include "optimizer/fit_options.h"
-#include "optimizer/light_matrix.h"
+#include "partition/plan_options.h"
 #include "render/judge.h"
 #include "render/true_lighting.h"
 
@@ -36,10 +38,15 @@ namespace lightfit {
 inline constexpr char kLightfitName[] = "lightfit";
 inline constexpr char kAsPublishedName[] = "as-published";
 inline constexpr char kLineName[] = "line";
+inline constexpr char kOneMapName[] = "one map";
 
 struct CompareOptions {
-  MapSize map = {400, 400};
-  FitOptions fit;  // of "lightfit"; its margin and min_samples go for the other fits too
+  MapSize map = {400, 400};  // of single maps
+  FitOptions fit;            // of "lightfit"; its margin and min_samples go for the other fits too
+
+  // Where "lightfit" is a plan of several maps: PlanOptions::fit is `fit`, and `map` has the texels
+  // of all maps, see SetPlan().
+  std::optional<PlanOptions> plan;
 
   // Counts are means over phases, as those of a single one jump about by a tenth and more when the
   // map is moved by a part of a texel, which hides differences between methods.
@@ -57,42 +64,49 @@ struct CompareOptions {
   std::function<void(const std::string&)> before_row;
 };
 
-struct ComparedMap {
-  std::string name;
-  absl::Status status;  // why there is no matrix, or why it cannot be used for this light
-  std::string note;     // empty, or how the method fell back, or why `figures` are absent
-  Eigen::Matrix4d map_from_world = Eigen::Matrix4d::Identity();  // texels of CompareOptions::map
+// For plans of several maps.
+void SetPlan(const PlanOptions& plan, CompareOptions* options);
 
-  // What look-ups outside the map find. Of a fit LightMatrix::border, of a matrix that was given
+struct ComparedRow {
+  std::string name;
+  absl::Status status;  // why there are no maps, or why they cannot be used for this light
+  std::string note;     // empty, or how the method fell back, or why `figures` are absent
+  SchemeMaps drawn;
+
+  // What look-ups outside the maps find. Of a fit LightMatrix::border, of a matrix that was given
   // what was said with it; the published set-ups know only a lit one.
-  Border border = Border::kLit;
+  Border border() const { return BorderOf(drawn); }
 
   // Over the samples that every table is over (FigureOptions()), of the edges that a map with the
   // border of "lightfit" serves. The energy is Chong and Gortler's, math.md (3), squared
-  // footprints, whatever was minimised. Absent: no samples, or w <= 0 at some.
+  // footprints, whatever was minimised; of several maps as EvaluatePlan() has it. Absent: no
+  // samples, w <= 0 at some in a single map, or maps that are no matrices.
   std::optional<Figures> figures;
   std::optional<WrongPixels> wrong;  // absent without truth
-  std::optional<double> foretold;    // share of wrong pixels foretold from the read-back
-  std::optional<MapCrawl> crawl;     // to CompareOptions::next; absent: `note` says why
-  ShadowImage image;                 // CompareOptions::keep_images; of the first phase
+
+  // Share of wrong pixels foretold from the read-back, without half spaces and guard of a plan.
+  // Absent for maps that are no matrices.
+  std::optional<double> foretold;
+  std::optional<MapCrawl> crawl;  // to CompareOptions::next; absent: `note` says why
+  ShadowImage image;              // CompareOptions::keep_images; of the first phase
 };
 
 struct LightComparison {
   Light light;
   LightingCounts lighting;  // of the screen; zeros without truth
   SampleCounts samples;     // of the read-back, that figures are over
-  std::vector<ComparedMap> maps;
+  std::vector<ComparedRow> rows;
   std::vector<Lighting> truth;  // CompareOptions::keep_images
 
   // Null when there is no row of that name.
-  const ComparedMap* Find(absl::string_view name) const;
+  const ComparedRow* Find(absl::string_view name) const;
 
   // The row that the others are compared with.
-  const ComparedMap& lightfit() const { return maps.back(); }
+  const ComparedRow& lightfit() const { return rows.back(); }
 };
 
 // As many rows as CompareMaps() gives, and their names.
-std::vector<std::string> RowNames(const std::vector<GivenMatrices>& given);
+std::vector<std::string> RowNames(const CompareOptions& options);
 
 // Never fails as a whole: a light that cannot be used has rows that say so.
 LightComparison CompareMaps(const CompareStage& stage,

@@ -32,29 +32,34 @@ class PixelSum {
   int num_lights_ = 0;
 };
 
-MethodTotals TotalsOfRow(absl::Span<const LightComparison> lights, size_t row) {
+MethodTotals TotalsOfRow(absl::Span<const LightComparison> lights, size_t index) {
   MethodTotals totals;
-  totals.name = lights.front().maps[row].name;
+  totals.name = lights.front().rows[index].name;
   PixelSum ideal, practical;
   double log_energy_ratio = 0.0;
   std::vector<MapCrawl> crawls;
+  int64_t num_maps = 0;
   for (const LightComparison& light : lights) {
-    const ComparedMap& map = light.maps[row];
-    const ComparedMap& lightfit = light.lightfit();
-    if (!map.status.ok()) ++totals.num_failed;
-    if (!map.status.ok() || !lightfit.status.ok()) continue;
+    const ComparedRow& row = light.rows[index];
+    const ComparedRow& lightfit = light.lightfit();
+    if (!row.status.ok()) ++totals.num_failed;
+    if (!row.status.ok() || !lightfit.status.ok()) continue;
     ++totals.num_lights;
-    if (map.border == Border::kDark) ++totals.num_dark;
-    if (map.wrong.has_value() && lightfit.wrong.has_value()) {
-      ideal.Add(map.wrong->ideal, lightfit.wrong->ideal);
-      practical.Add(map.wrong->practical, lightfit.wrong->practical);
+    num_maps += NumMaps(row.drawn);
+    if (row.border() == Border::kDark) ++totals.num_dark;
+    if (row.wrong.has_value() && lightfit.wrong.has_value()) {
+      ideal.Add(row.wrong->ideal, lightfit.wrong->ideal);
+      practical.Add(row.wrong->practical, lightfit.wrong->practical);
     }
-    if (map.crawl.has_value() && lightfit.crawl.has_value()) crawls.push_back(*map.crawl);
-    if (map.figures.has_value() && lightfit.figures.has_value() && map.figures->energy > 0.0 &&
+    if (row.crawl.has_value() && lightfit.crawl.has_value()) crawls.push_back(*row.crawl);
+    if (row.figures.has_value() && lightfit.figures.has_value() && row.figures->energy > 0.0 &&
         lightfit.figures->energy > 0.0) {
       ++totals.num_energy_lights;
-      log_energy_ratio += std::log(map.figures->energy / lightfit.figures->energy);
+      log_energy_ratio += std::log(row.figures->energy / lightfit.figures->energy);
     }
+  }
+  if (totals.num_lights > 0) {
+    totals.mean_maps = static_cast<double>(num_maps) / totals.num_lights;
   }
   totals.ideal = ideal.Result();
   totals.practical = practical.Result();
@@ -73,23 +78,23 @@ std::optional<double> RatioOf(double value, double lightfit_value) {
   return value / lightfit_value;
 }
 
-std::optional<double> WrongRatio(const ComparedMap& map,
-                                 const ComparedMap& lightfit,
+std::optional<double> WrongRatio(const ComparedRow& row,
+                                 const ComparedRow& lightfit,
                                  int64_t WrongPixels::*kind) {
-  if (!map.wrong.has_value() || !lightfit.wrong.has_value()) return std::nullopt;
-  return RatioOf(static_cast<double>((*map.wrong).*kind),
+  if (!row.wrong.has_value() || !lightfit.wrong.has_value()) return std::nullopt;
+  return RatioOf(static_cast<double>((*row.wrong).*kind),
                  static_cast<double>((*lightfit.wrong).*kind));
 }
 
-std::optional<double> EnergyRatio(const ComparedMap& map, const ComparedMap& lightfit) {
-  if (!map.figures.has_value() || !lightfit.figures.has_value()) return std::nullopt;
-  return RatioOf(map.figures->energy, lightfit.figures->energy);
+std::optional<double> EnergyRatio(const ComparedRow& row, const ComparedRow& lightfit) {
+  if (!row.figures.has_value() || !lightfit.figures.has_value()) return std::nullopt;
+  return RatioOf(row.figures->energy, lightfit.figures->energy);
 }
 
 std::vector<MethodTotals> TotalsOf(absl::Span<const LightComparison> lights) {
   std::vector<MethodTotals> totals;
   if (lights.empty()) return totals;
-  for (size_t row = 0; row < lights.front().maps.size(); ++row) {
+  for (size_t row = 0; row < lights.front().rows.size(); ++row) {
     totals.push_back(TotalsOfRow(lights, row));
   }
   return totals;

@@ -19,16 +19,17 @@ namespace lightfit {
 std::optional<double> RatioOf(double value, double lightfit_value);
 
 // Of one kind of wrong pixels, and of energies; absent also where either row has none.
-std::optional<double> WrongRatio(const ComparedMap& map,
-                                 const ComparedMap& lightfit,
+std::optional<double> WrongRatio(const ComparedRow& row,
+                                 const ComparedRow& lightfit,
                                  int64_t WrongPixels::*kind);
-std::optional<double> EnergyRatio(const ComparedMap& map, const ComparedMap& lightfit);
+std::optional<double> EnergyRatio(const ComparedRow& row, const ComparedRow& lightfit);
 
 struct MethodTotals {
   std::string name;
-  int num_lights = 0;  // with a matrix of this method and one of lightfit: what is counted below
-  int num_failed = 0;  // without a matrix of this method
-  int num_dark = 0;    // of num_lights: whose map has a dark border
+  int num_lights = 0;      // with maps of this method and of lightfit: what is counted below
+  int num_failed = 0;      // without maps of this method
+  int num_dark = 0;        // of num_lights: whose maps have a dark border
+  double mean_maps = 0.0;  // over num_lights
 
   // Wrong pixels; absent without truth or without lights.
   struct Pixels {

@@ -56,6 +56,30 @@ TEST(DurationText, ReadsAsPeopleSayIt) {
   EXPECT_EQ(DurationText(INFINITY), "1000 h 0 min");
 }
 
+// Marks stay as they are, and so does what asks no map.
+TEST(ShadeShadows, TintsByTheMapThatIsAsked) {
+  SurfaceImage image;
+  image.camera.width = 4;
+  image.camera.height = 1;
+  image.pixels.resize(4);
+  for (SurfacePoint& pixel : image.pixels) {
+    pixel.triangle = 0;
+    pixel.normal = Eigen::Vector3d::UnitZ();
+  }
+  const Light sun = Light::Directional("sun", {0, 0, -1});
+  const std::vector<Lighting> truth(4, Lighting::kLit);
+  std::vector<Lighting> shadows = truth;
+  shadows[3] = Lighting::kShadowed;
+  const Image plain = ShadeShadows(image, sun, truth, shadows);
+  const std::vector<int> asked = {-1, 0, 1, 1};
+  const Image tinted = ShadeShadows(image, sun, truth, shadows, asked);
+  const auto differ = [](Rgb a, Rgb b) { return a.r != b.r || a.g != b.g || a.b != b.b; };
+  EXPECT_FALSE(differ(tinted.At(0, 0), plain.At(0, 0)));
+  EXPECT_TRUE(differ(tinted.At(1, 0), plain.At(1, 0)));
+  EXPECT_TRUE(differ(tinted.At(2, 0), tinted.At(1, 0)));
+  EXPECT_FALSE(differ(tinted.At(3, 0), plain.At(3, 0)));
+}
+
 TEST(BestCrop, IsTheLargestSumOfAll) {
   constexpr int kWidth = 23, kHeight = 17;
   std::mt19937 random(7);

@@ -75,6 +75,42 @@ TEST(JudgePlan, OfOneMapIsJudgeMatrix) {
   EXPECT_GT(num_outside, 100);
 }
 
+// What the guard keeps from being asked might as well not be there: the map without its rim, of
+// which every texel is where it was.
+TEST(JudgePlan, AGuardLeavesTheMapWithoutItsRim) {
+  constexpr int kGuard = 3;
+  int64_t num_more_outside = 0;
+  for (uint64_t seed = 721; seed < 727; ++seed) {
+    Random random(seed);
+    const PlanStage stage(seed, RandomLightAbove(random));
+    const PlanMap part = testing::RandomPart(stage, random);
+    const Border border = random.Coin() ? Border::kLit : Border::kDark;
+    const MapSize inner = {part.size.width - 2 * kGuard, part.size.height - 2 * kGuard};
+    const Eigen::Vector2d to_inner = Eigen::Vector2d::Constant(-kGuard);
+    const Plan cut =
+        PlanOfOne(testing::PlanMapOf(testing::Moved(part.map_from_world, to_inner), inner), border);
+    for (const int phases : {1, 4}) {
+      JudgeOptions options;
+      options.phases = phases;
+      const auto guarded = JudgePlan(stage.caster,
+                                     stage.image,
+                                     stage.truth,
+                                     stage.light,
+                                     PlanOfOne(part, border),
+                                     options,
+                                     kGuard);
+      ASSERT_THAT(guarded, IsOk());
+      const ShadowImage without_rim = Judged(stage, cut, phases);
+      EXPECT_EQ(guarded->ideal, without_rim.ideal);
+      EXPECT_EQ(guarded->wrong.ideal, without_rim.wrong.ideal);
+      EXPECT_EQ(guarded->wrong.outside, without_rim.wrong.outside);
+      num_more_outside +=
+          guarded->wrong.outside - Judged(stage, PlanOfOne(part, border), phases).wrong.outside;
+    }
+  }
+  EXPECT_GT(num_more_outside, 100);
+}
+
 TEST(JudgePlan, TwoEqualMapsSplitByAPlaneAreTheOneMap) {
   for (uint64_t seed = 711; seed < 717; ++seed) {
     Random random(seed);

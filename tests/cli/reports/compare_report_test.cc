@@ -1,4 +1,4 @@
-// Tables and comma-separated values of comparisons made by hand.
+// Tables of comparisons made by hand.
 #include "cli/reports/compare_report.h"
 
 #include <gmock/gmock.h>
@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "absl/strings/str_split.h"
+#include "cli/reports/compare_csv.h"
 #include "tests/jobs/compare/compared_lights.h"
 
 namespace lightfit::cli {
@@ -20,7 +20,7 @@ CompareHeading Heading() {
   CompareHeading heading;
   heading.source = "scene.glb";
   heading.screen_width = heading.screen_height = 750;
-  heading.map = {400, 400};
+  heading.maps = "map 400 x 400 texels";
   return heading;
 }
 
@@ -56,7 +56,7 @@ TEST(CompareReport, CrawlHasColumnsOnlyWhereItIsMeasured) {
   crawl.points.num_points = 900;
   crawl.points.phase_drift_texels = 0.25;
   crawl.flicker = Flicker{200, 3, 4};
-  lights[0].maps[0].crawl = crawl;
+  lights[0].rows[0].crawl = crawl;
   CompareHeading heading = Heading();
   heading.next = "frame 7 of cameras.json";
   const std::string text = CompareReportText(heading, lights, false);
@@ -67,7 +67,7 @@ TEST(CompareReport, CrawlHasColumnsOnlyWhereItIsMeasured) {
   EXPECT_THAT(text, HasSubstr("Flips: "));
 
   lights.push_back(lights[0]);
-  lights[0].maps[1].crawl = lights[1].maps[1].crawl = crawl;
+  lights[0].rows[1].crawl = lights[1].rows[1].crawl = crawl;
   EXPECT_THAT(CompareReportText(heading, lights, false), HasSubstr("   0.250       -     1.50"));
 
   heading.screen_width = 0;
@@ -91,7 +91,7 @@ TEST(CompareReport, SaysThatCountsAreMeans) {
 TEST(CompareReport, ShowsBordersWhereAnyIsDark) {
   std::vector<LightComparison> lights = ThreeLights();
   EXPECT_THAT(CompareReportText(Heading(), lights, true), Not(HasSubstr("dark")));
-  lights[0].maps[1].border = Border::kDark;
+  std::get<Plan>(lights[0].rows[1].drawn.maps).border = Border::kDark;
   const std::string one = CompareReportText(Heading(), {lights[0]}, false);
   EXPECT_THAT(one, HasSubstr("method    border "));
   EXPECT_THAT(one, HasSubstr("focused      lit "));
@@ -107,32 +107,27 @@ TEST(CompareReport, ShowsBordersWhereAnyIsDark) {
   EXPECT_THAT(CompareCsv(lights), HasSubstr(",lit,\n"));
 }
 
-// Splits a line at the commas outside quotes.
-std::vector<std::string> Fields(const std::string& line) {
-  std::vector<std::string> fields(1);
-  bool quoted = false;
-  for (const char c : line) {
-    if (c == '"') quoted = !quoted;
-    if (c == ',' && !quoted) {
-      fields.emplace_back();
-    } else {
-      fields.back().push_back(c);
-    }
-  }
-  return fields;
-}
-
-TEST(CompareCsv, HasALineForEachLightAndMethod) {
-  const std::string csv = CompareCsv(ThreeLights());
-  const std::vector<std::string> lines = absl::StrSplit(csv, '\n');
-  ASSERT_EQ(lines.size(), 1u + 6u + 1u);
-  const std::vector<std::string> names = Fields(lines[0]);
-  for (size_t i = 1; i + 1 < lines.size(); ++i) {
-    EXPECT_EQ(Fields(lines[i]).size(), names.size()) << lines[i];
-  }
-  EXPECT_EQ(lines[1].substr(0, 34), "a,sun,0,-1,0.5,focused,ok,30,40,0,");
-  EXPECT_THAT(lines[5], HasSubstr("c,sun,0,-1,0.5,focused,failed,,,,,,,,,,,"));
-  EXPECT_THAT(lines[5], HasSubstr("\"no, \"\"never\"\"\""));
+TEST(CompareReport, PlansHaveColumnsOfTheirOwn) {
+  std::vector<LightComparison> lights = {OneLight(
+      "a", {Row("ZP4", 30, 40, 8), FailedRow("cube", "no way"), Row("lightfit", 10, 20, 2)})};
+  auto& plan = std::get<Plan>(lights[0].rows[0].drawn.maps);
+  plan.maps.resize(4);
+  for (PlanMap& map : plan.maps) map.size = {20, 10};
+  EXPECT_THAT(CompareReportText(Heading(), lights, false), Not(HasSubstr("texels  ")));
+  CompareHeading heading = Heading();
+  heading.has_plans = true;
+  heading.maps = "up to 4 maps for each light, 800 texels in all";
+  const std::string text = CompareReportText(heading, lights, false);
+  EXPECT_THAT(text, HasSubstr("; up to 4 maps for each light, 800 texels in all\n"));
+  EXPECT_THAT(text, HasSubstr("maps  texels "));
+  EXPECT_THAT(text, HasSubstr("ZP4          4     800 "));
+  EXPECT_THAT(text, HasSubstr("cube        no maps, see below"));
+  EXPECT_THAT(text, HasSubstr("\nMaps, texels: "));
+  lights.push_back(lights[0]);
+  lights[1].rows[0].drawn = SchemeMaps{ParaboloidPair()};
+  EXPECT_THAT(CompareReportText(heading, lights, false), HasSubstr("ZP4         3.00 "));
+  EXPECT_THAT(CompareCsv(lights), HasSubstr(",4,800,lit,\n"));
+  EXPECT_THAT(CompareCsv(lights), HasSubstr(",,,,no way\n"));
 }
 
 }  // namespace

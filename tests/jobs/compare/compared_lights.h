@@ -3,6 +3,7 @@
 // Comparisons made by hand, for totals, tables and pictures.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -10,31 +11,37 @@
 
 #include "absl/status/status.h"
 #include "jobs/compare/rows.h"
+#include "jobs/schemes/scheme.h"
 
 namespace lightfit {
 
-inline ComparedMap Row(const std::string& name, int64_t ideal, int64_t practical, double energy) {
-  ComparedMap map;
-  map.name = name;
-  map.wrong = WrongPixels();
-  map.wrong->ideal = ideal;
-  map.wrong->practical = practical;
-  map.figures = Figures();
-  map.figures->energy = energy;
-  return map;
+// Of a row with a single map.
+inline const Eigen::Matrix4d& MatrixOf(const ComparedRow& row) {
+  return OnlyMap(row.drawn)->map_from_world;
 }
 
-inline ComparedMap FailedRow(const std::string& name, const std::string& reason) {
-  ComparedMap map;
-  map.name = name;
-  map.status = absl::FailedPreconditionError(reason);
-  return map;
+inline ComparedRow Row(const std::string& name, int64_t ideal, int64_t practical, double energy) {
+  ComparedRow row;
+  row.name = name;
+  row.wrong = WrongPixels();
+  row.wrong->ideal = ideal;
+  row.wrong->practical = practical;
+  row.figures = Figures();
+  row.figures->energy = energy;
+  return row;
 }
 
-inline LightComparison OneLight(const std::string& name, std::vector<ComparedMap> maps) {
+inline ComparedRow FailedRow(const std::string& name, const std::string& reason) {
+  ComparedRow row;
+  row.name = name;
+  row.status = absl::FailedPreconditionError(reason);
+  return row;
+}
+
+inline LightComparison OneLight(const std::string& name, std::vector<ComparedRow> rows) {
   LightComparison light;
   light.light = Light::Directional(name, {0, -1, 0.5});
-  light.maps = std::move(maps);
+  light.rows = std::move(rows);
   return light;
 }
 

@@ -12,6 +12,7 @@
 #include "jobs/compare/rows.h"
 #include "jobs/compare/totals.h"
 #include "tests/jobs/compare/compare_scene.h"
+#include "tests/jobs/compare/compared_lights.h"
 #include "tests/testing/matchers.h"
 
 namespace lightfit {
@@ -58,7 +59,7 @@ class CrawlTest : public ::testing::Test {
 
 TEST_F(CrawlTest, IsNothingWhereTheCameraStands) {
   const NextFrame next = NextOf({});
-  for (const ComparedMap& map : CompareTo(next).maps) {
+  for (const ComparedRow& map : CompareTo(next).rows) {
     SCOPED_TRACE(map.name);
     ASSERT_TRUE(map.crawl.has_value()) << map.note;
     EXPECT_GT(map.crawl->points.num_points, 500);
@@ -80,9 +81,9 @@ TEST_F(CrawlTest, IsThatOfTheMatricesOfBothFrames) {
   const std::vector<Lighting> truth = TrueLighting(*caster_, stage_.screen, kSun);
   for (const char* name : {"focused", "lispsm", "lightfit"}) {
     SCOPED_TRACE(name);
-    const ComparedMap& row = *present.Find(name);
-    const Eigen::Matrix4d& a = row.map_from_world;
-    const Eigen::Matrix4d& b = there.Find(name)->map_from_world;
+    const ComparedRow& row = *present.Find(name);
+    const Eigen::Matrix4d& a = MatrixOf(row);
+    const Eigen::Matrix4d& b = MatrixOf(*there.Find(name));
     EXPECT_NE(a, b);
     const absl::StatusOr<Flicker> flicker = MeasureFlicker(*caster_,
                                                            stage_.screen,
@@ -121,10 +122,10 @@ TEST_F(CrawlTest, IsThatOfTheMatricesOfBothFrames) {
 TEST_F(CrawlTest, AMatrixThatIsKeptHasNone) {
   const NextFrame next = NextOf({0.1, 0.0, 0.0, 0.5, 0.0});
   options_.next = nullptr;
-  const Eigen::Matrix4d kept = CompareMaps(stage_, kSun, options_).Find("lightfit")->map_from_world;
+  const Eigen::Matrix4d kept = MatrixOf(*CompareMaps(stage_, kSun, options_).Find("lightfit"));
   options_.given = {{"kept", GivenMatrix{kept}, {}}};
   const LightComparison comparison = CompareTo(next);
-  const ComparedMap& row = *comparison.Find("kept");
+  const ComparedRow& row = *comparison.Find("kept");
   ASSERT_TRUE(row.crawl.has_value()) << row.note;
   EXPECT_EQ(row.crawl->points.phase_drift_texels, 0.0);
   EXPECT_EQ(row.crawl->points.moved_share, 0.0);
@@ -196,9 +197,9 @@ TEST(PooledCrawl, TotalsCountTheLightsThatBothHave) {
     LightComparison comparison;
     comparison.light = kSun;
     for (auto& [name, crawl] : {std::pair("focused", focused), std::pair("lightfit", lightfit)}) {
-      comparison.maps.emplace_back();
-      comparison.maps.back().name = name;
-      comparison.maps.back().crawl = crawl;
+      comparison.rows.emplace_back();
+      comparison.rows.back().name = name;
+      comparison.rows.back().crawl = crawl;
     }
     return comparison;
   };

@@ -14,6 +14,7 @@
 #include "render/generator/room.h"
 #include "render/readback_image.h"
 #include "tests/jobs/compare/compare_scene.h"
+#include "tests/jobs/compare/compared_lights.h"
 #include "tests/testing/matchers.h"
 
 namespace lightfit {
@@ -53,7 +54,7 @@ TEST_F(CompareMapsTest, HasARowForEveryMethod) {
   options_.given = {{"engine", GivenMatrix{Eigen::Matrix4d::Identity()}, {}}};
   const LightComparison comparison = Compare(kSun);
   std::vector<std::string> names;
-  for (const ComparedMap& map : comparison.maps) names.push_back(map.name);
+  for (const ComparedRow& map : comparison.rows) names.push_back(map.name);
   EXPECT_THAT(names,
               ::testing::ElementsAre("standard",
                                      "focused",
@@ -66,10 +67,10 @@ TEST_F(CompareMapsTest, HasARowForEveryMethod) {
                                      "line",
                                      "engine",
                                      "lightfit"));
-  EXPECT_EQ(names, RowNames(options_.given));
+  EXPECT_EQ(names, RowNames(options_));
   EXPECT_EQ(&comparison.lightfit(), comparison.Find("lightfit"));
   EXPECT_EQ(comparison.Find("no such row"), nullptr);
-  for (const ComparedMap& map : comparison.maps) {
+  for (const ComparedRow& map : comparison.rows) {
     if (map.name == "engine") continue;
     SCOPED_TRACE(map.name);
     ASSERT_THAT(map.status, IsOk());
@@ -106,8 +107,8 @@ TEST_F(CompareMapsTest, FiguresAreThoseOfAnybodysMatrixOverTheTablesSamples) {
     SCOPED_TRACE(name);
     const absl::StatusOr<LightMatrix> fit = FitLight(readback->View(), kSun, options_.map, options);
     ASSERT_THAT(fit, IsOk());
-    const ComparedMap& row = *comparison.Find(name);
-    EXPECT_EQ(row.map_from_world, fit->map_from_world);
+    const ComparedRow& row = *comparison.Find(name);
+    EXPECT_EQ(MatrixOf(row), fit->map_from_world);
     FitOptions table;  // default samples
     table.metric = Metric::kL2;
     const absl::StatusOr<Figures> figures =
@@ -134,7 +135,7 @@ TEST(CompareDarkBorder, FiguresAreOverTheEdgesThatItServes) {
   CompareOptions options;
   options.fit.border = BorderChoice::kDark;
   const LightComparison comparison = CompareMaps(*stage, sun, options);
-  EXPECT_EQ(comparison.lightfit().border, Border::kDark);
+  EXPECT_EQ(comparison.lightfit().border(), Border::kDark);
 
   const absl::StatusOr<ReadbackImage> readback =
       RenderReadback(*caster, stage->readback.camera, {sun});
@@ -143,17 +144,17 @@ TEST(CompareDarkBorder, FiguresAreOverTheEdgesThatItServes) {
   table.metric = Metric::kL2;
   for (const char* name : {"focused", "lightfit"}) {
     SCOPED_TRACE(name);
-    const ComparedMap& row = *comparison.Find(name);
+    const ComparedRow& row = *comparison.Find(name);
     ASSERT_TRUE(row.figures.has_value()) << row.note;
     const absl::StatusOr<Figures> figures =
-        EvaluateMatrix(readback->View(), sun, row.map_from_world, options.map, table);
+        EvaluateMatrix(readback->View(), sun, MatrixOf(row), options.map, table);
     ASSERT_THAT(figures, IsOk());
     EXPECT_LT(RelativeError(row.figures->energy, figures->energy), kSumTolerance);
     EXPECT_EQ(comparison.samples.used, figures->samples.used);
   }
   table.border = BorderChoice::kLit;
   const absl::StatusOr<Figures> of_every_edge = EvaluateMatrix(
-      readback->View(), sun, comparison.Find("focused")->map_from_world, options.map, table);
+      readback->View(), sun, MatrixOf(*comparison.Find("focused")), options.map, table);
   ASSERT_THAT(of_every_edge, IsOk());
   EXPECT_LT(comparison.samples.used, of_every_edge->samples.used);
 }
@@ -175,12 +176,12 @@ TEST_F(CompareMapsTest, FinerMapsHaveFewerWrongPixels) {
   const LightComparison coarse = Compare(kSun);
   options_.map = {1000, 1000};
   const LightComparison fine = Compare(kSun);
-  for (size_t row = 0; row < fine.maps.size(); ++row) {
-    SCOPED_TRACE(fine.maps[row].name);
-    ASSERT_TRUE(fine.maps[row].wrong.has_value()) << fine.maps[row].status;
+  for (size_t row = 0; row < fine.rows.size(); ++row) {
+    SCOPED_TRACE(fine.rows[row].name);
+    ASSERT_TRUE(fine.rows[row].wrong.has_value()) << fine.rows[row].status;
     // What lies outside the map stays outside: a coarse read-back does not show all that is dark.
-    const WrongPixels& wrong = *fine.maps[row].wrong;
-    EXPECT_LT(5 * (wrong.ideal - wrong.outside), coarse.maps[row].wrong->ideal);
+    const WrongPixels& wrong = *fine.rows[row].wrong;
+    EXPECT_LT(5 * (wrong.ideal - wrong.outside), coarse.rows[row].wrong->ideal);
   }
 }
 
@@ -190,7 +191,7 @@ TEST_F(CompareMapsTest, ImagesHoldTheWrongPixels) {
   const LightComparison comparison = Compare(kSun);
   ASSERT_EQ(comparison.truth.size(), 200u * 150u);
   EXPECT_GT(comparison.lighting.shadowed, 100);
-  for (const ComparedMap& map : comparison.maps) {
+  for (const ComparedRow& map : comparison.rows) {
     SCOPED_TRACE(map.name);
     int64_t ideal = 0, practical = 0;
     for (size_t i = 0; i < comparison.truth.size(); ++i) {
@@ -203,11 +204,11 @@ TEST_F(CompareMapsTest, ImagesHoldTheWrongPixels) {
 }
 
 TEST_F(CompareMapsTest, AGivenMatrixIsJudgedAsOurs) {
-  const Eigen::Matrix4d ours = Compare(kSun).lightfit().map_from_world;
+  const Eigen::Matrix4d ours = MatrixOf(Compare(kSun).lightfit());
   options_.given = {{"copy", GivenMatrix{ours}, {}}, {"by name", std::nullopt, {{"sun", {ours}}}}};
   const LightComparison comparison = Compare(kSun);
   for (const char* name : {"copy", "by name"}) {
-    const ComparedMap& copy = *comparison.Find(name);
+    const ComparedRow& copy = *comparison.Find(name);
     ASSERT_THAT(copy.status, IsOk());
     EXPECT_EQ(copy.wrong->ideal, comparison.lightfit().wrong->ideal);
     EXPECT_EQ(copy.wrong->practical, comparison.lightfit().wrong->practical);
@@ -217,7 +218,7 @@ TEST_F(CompareMapsTest, AGivenMatrixIsJudgedAsOurs) {
 
 // Each row is judged with the border of its own map, over all phases.
 TEST_F(CompareMapsTest, RowsAreJudgedWithTheirBorder) {
-  const Eigen::Matrix4d ours = Compare(kSun).lightfit().map_from_world;
+  const Eigen::Matrix4d ours = MatrixOf(Compare(kSun).lightfit());
   Eigen::Matrix4d aside = ours;  // half of it outside
   aside.row(0) += 0.5 * options_.map.width * aside.row(3);
   options_.given = {{"lit", GivenMatrix{aside}, {}},
@@ -225,16 +226,16 @@ TEST_F(CompareMapsTest, RowsAreJudgedWithTheirBorder) {
                     {"dark by name", std::nullopt, {{"sun", {aside, Border::kDark}}}}};
   const LightComparison comparison = Compare(kSun);
   const std::vector<Lighting> truth = TrueLighting(*caster_, stage_.screen, kSun);
-  for (const ComparedMap& row : comparison.maps) {
+  for (const ComparedRow& row : comparison.rows) {
     SCOPED_TRACE(row.name);
     const bool is_dark = row.name.rfind("dark", 0) == 0;
-    EXPECT_EQ(row.border, is_dark ? Border::kDark : Border::kLit);
+    EXPECT_EQ(row.border(), is_dark ? Border::kDark : Border::kLit);
     const absl::StatusOr<ShadowImage> judged =
         JudgeMatrix(*caster_,
                     stage_.screen,
                     truth,
                     kSun,
-                    {row.map_from_world, options_.map, row.border},
+                    {MatrixOf(row), options_.map, row.border()},
                     {.phases = 4});
     ASSERT_THAT(judged, IsOk());
     EXPECT_EQ(row.wrong->ideal, judged->wrong.ideal);
@@ -246,7 +247,7 @@ TEST_F(CompareMapsTest, RowsAreJudgedWithTheirBorder) {
 }
 
 TEST_F(CompareMapsTest, UnusableMatricesHaveARowThatSaysWhy) {
-  const Eigen::Matrix4d of_sun = Compare(kSun).lightfit().map_from_world;
+  const Eigen::Matrix4d of_sun = MatrixOf(Compare(kSun).lightfit());
   Eigen::Matrix4d not_finite = of_sun;
   not_finite(0, 0) = NAN;
   options_.given = {{"other sun", GivenMatrix{of_sun}, {}},
@@ -265,13 +266,13 @@ TEST_F(CompareMapsTest, UnusableMatricesHaveARowThatSaysWhy) {
 
 // A warp whose horizon cuts through the visible floor: no energy, but pixels to count.
 TEST_F(CompareMapsTest, AMatrixThatTurnsOverHasNoEnergy) {
-  Eigen::Matrix4d turned = Compare(kSun).lightfit().map_from_world;
+  Eigen::Matrix4d turned = MatrixOf(Compare(kSun).lightfit());
   // w = 0 along a line of the floor: w becomes the map's own u, less than a quarter of its width.
   turned.row(3) = turned.row(0) - 0.5 * options_.map.width * turned.row(3);
-  turned.row(0) = Compare(kSun).lightfit().map_from_world.row(3);
+  turned.row(0) = MatrixOf(Compare(kSun).lightfit()).row(3);
   options_.given = {{"turned", GivenMatrix{turned}, {}}};
   const LightComparison comparison = Compare(kSun);
-  const ComparedMap& map = *comparison.Find("turned");
+  const ComparedRow& map = *comparison.Find("turned");
   ASSERT_THAT(map.status, IsOk());
   EXPECT_FALSE(map.figures.has_value());
   EXPECT_THAT(map.note, HasSubstr("w <= 0 at "));
@@ -282,7 +283,7 @@ TEST_F(CompareMapsTest, WithoutAShadowLightfitIsTheFocusedMap) {
   const LightComparison comparison = Compare(Light::Directional("noon", {0, -1, 0}));
   EXPECT_THAT(comparison.lightfit().status, IsOk());
   EXPECT_LT(comparison.lightfit().wrong->ideal, stage_.screen.num_surface / 1000);
-  const ComparedMap& focused = *comparison.Find("focused");
+  const ComparedRow& focused = *comparison.Find("focused");
   EXPECT_THAT(focused.status, IsOk());
   // Beside a box the centre of the floor's texel may lie on the box.
   EXPECT_LT(focused.wrong->ideal, stage_.screen.num_surface / 1000);
@@ -290,7 +291,7 @@ TEST_F(CompareMapsTest, WithoutAShadowLightfitIsTheFocusedMap) {
 
 TEST_F(CompareMapsTest, ALampAmongItsReceiversIsNamed) {
   const LightComparison comparison = Compare(Light::Point("lamp", {0, 1, 0}));
-  for (const ComparedMap& map : comparison.maps) {
+  for (const ComparedRow& map : comparison.rows) {
     SCOPED_TRACE(map.name);
     if (map.status.ok()) continue;
     EXPECT_FALSE(map.wrong.has_value());
@@ -301,8 +302,8 @@ TEST_F(CompareMapsTest, ALampAmongItsReceiversIsNamed) {
 
 TEST_F(CompareMapsTest, AnInvalidLightFailsInEveryRow) {
   const LightComparison comparison = Compare(Light::Directional("sun", {0, 0, 0}));
-  EXPECT_EQ(comparison.maps.size(), RowNames({}).size());
-  for (const ComparedMap& map : comparison.maps) {
+  EXPECT_EQ(comparison.rows.size(), RowNames({}).size());
+  for (const ComparedRow& map : comparison.rows) {
     EXPECT_THAT(map.status, StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("direction")));
   }
 }
@@ -321,7 +322,7 @@ TEST_F(CompareMapsTest, AReadbackGivesTheSameEnergiesWithoutPixels) {
     SCOPED_TRACE(name);
     EXPECT_EQ(alone.Find(name)->figures->energy, with_scene.Find(name)->figures->energy);
   }
-  for (const ComparedMap& map : alone.maps) {
+  for (const ComparedRow& map : alone.rows) {
     SCOPED_TRACE(map.name);
     EXPECT_THAT(map.status, IsOk());
     EXPECT_TRUE(map.figures.has_value()) << map.note;
@@ -334,9 +335,9 @@ TEST_F(CompareMapsTest, ShadowBitsDoNotMatter) {
   other.shadow_bit = 31;
   const LightComparison a = Compare(kSun), b = Compare(other);
   EXPECT_EQ(b.light.shadow_bit, 31);
-  for (size_t row = 0; row < a.maps.size(); ++row) {
-    EXPECT_EQ(a.maps[row].map_from_world, b.maps[row].map_from_world);
-    EXPECT_EQ(a.maps[row].wrong->practical, b.maps[row].wrong->practical);
+  for (size_t row = 0; row < a.rows.size(); ++row) {
+    EXPECT_EQ(MatrixOf(a.rows[row]), MatrixOf(b.rows[row]));
+    EXPECT_EQ(a.rows[row].wrong->practical, b.rows[row].wrong->practical);
   }
 }
 
