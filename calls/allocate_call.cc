@@ -17,6 +17,7 @@
 #include "calls/summary_request.h"
 #include "jobs/allocate_lights.h"
 #include "jobs/fit_summary.h"
+#include "wire/map_sides_proto.h"
 #include "wire/options_proto.h"
 #include "wire/proto_json.h"
 
@@ -153,7 +154,7 @@ absl::StatusOr<v1::Allocation> Answer(const v1::AllocateRequest& request, Alloca
   const absl::StatusOr<ClipConvention> clip = ClipOfRequest(request);
   if (!clip.ok()) return clip.status();
   const absl::StatusOr<MapSizeRules> rules =
-      MapSizeRulesFromProto(request.rules(), task->options.margin_texels);
+      MapSidesFromProto(request.rules(), task->options.margin_texels);
   if (!rules.ok()) return rules.status();
   task->rules = *rules;
   if (absl::Status status = ReadWeights(request, task); !status.ok()) return status;

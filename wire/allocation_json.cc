@@ -3,7 +3,7 @@
 #include "absl/strings/str_format.h"
 #include "base/text_file.h"
 #include "geometry/map_size.h"
-#include "wire/options_proto.h"
+#include "wire/map_sides_proto.h"
 #include "wire/proto_json.h"
 
 namespace lightfit {
@@ -82,7 +82,7 @@ v1::Allocation AllocationToProto(const AllocationReport& report) {
   if (fit.has_plan_options()) proto.mutable_plan_options()->Swap(fit.mutable_plan_options());
   if (report.budget_texels) proto.set_budget_texels(*report.budget_texels);
   if (report.tolerance) *proto.mutable_tolerance() = ToleranceToProto(*report.tolerance);
-  *proto.mutable_rules() = MapSizeRulesToProto(report.rules);
+  *proto.mutable_rules() = MapSidesToProto<v1::MapSizeRules>(report.rules);
   proto.set_texels(report.Texels());
   for (size_t i = 0; i < report.entries.size(); ++i) {
     const AllocationEntry& entry = report.entries[i];

@@ -149,27 +149,4 @@ absl::StatusOr<FitOptions> FitOptionsFromProto(const v1::FitOptions& proto) {
   return options;
 }
 
-v1::MapSizeRules MapSizeRulesToProto(const MapSizeRules& rules) {
-  v1::MapSizeRules proto;
-  proto.set_multiple(rules.multiple);
-  proto.set_powers_of_two(rules.powers_of_two);
-  proto.set_min_side(rules.min_side);
-  proto.set_max_side(rules.max_side);
-  return proto;
-}
-
-absl::StatusOr<MapSizeRules> MapSizeRulesFromProto(const v1::MapSizeRules& proto,
-                                                   double margin_texels) {
-  const auto or_default = [](int side, int default_side) {
-    return side == 0 ? default_side : side;
-  };
-  MapSizeRules rules;
-  rules.multiple = or_default(proto.multiple(), rules.multiple);
-  rules.powers_of_two = proto.powers_of_two();
-  rules.min_side = or_default(proto.min_side(), rules.min_side);
-  rules.max_side = or_default(proto.max_side(), rules.max_side);
-  if (absl::Status status = ValidateMapSizeRules(rules, margin_texels); !status.ok()) return status;
-  return rules;
-}
-
 }  // namespace lightfit

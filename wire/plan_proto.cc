@@ -10,8 +10,8 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/strip.h"
 #include "geometry/homography.h"
+#include "wire/map_sides_proto.h"
 #include "wire/matrix_proto.h"
-#include "wire/options_proto.h"
 #include "wire/result_json.h"
 
 namespace lightfit {
@@ -105,7 +105,8 @@ v1::PlanOptions PlanOptionsToProto(const PlanOptions& options) {
   } else {
     proto.set_texels(options.texels);
   }
-  if (options.sizes.has_value()) *proto.mutable_sizes() = MapSizeRulesToProto(*options.sizes);
+  if (options.sizes.has_value())
+    *proto.mutable_sizes() = MapSidesToProto<v1::MapSides>(*options.sizes);
   proto.set_guard_texels(options.guard_texels);
   proto.set_choose_by_forecast(options.choose_by_forecast);
   return proto;
@@ -131,7 +132,7 @@ absl::StatusOr<PlanOptions> PlanOptionsFromProto(const v1::PlanOptions& proto,
   }
   if (proto.has_sizes()) {
     const absl::StatusOr<MapSizeRules> sizes =
-        MapSizeRulesFromProto(proto.sizes(), fit.margin_texels + options.guard_texels);
+        MapSidesFromProto(proto.sizes(), fit.margin_texels + options.guard_texels);
     if (!sizes.ok()) return Named("plan_options.sizes", sizes.status());
     options.sizes = *sizes;
   }

@@ -208,6 +208,32 @@ TEST(PlanOptionsProto, ReadsBackAndSaysWhatIsWrong) {
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("max_maps = 33")));
 }
 
+TEST(PlanOptionsProto, HasTheSizesThatMapsMayHave) {
+  PlanOptions options;
+  options.sizes = MapSizeRules{.multiple = 32, .min_side = 96, .max_side = 2048};
+  const v1::PlanOptions proto = PlanOptionsToProto(options);
+  const absl::StatusOr<PlanOptions> back = PlanOptionsFromProto(proto, options.fit);
+  ASSERT_THAT(back, IsOk());
+  ASSERT_TRUE(back->sizes.has_value());
+  EXPECT_EQ(PlanOptionsToProto(*back).SerializeAsString(), proto.SerializeAsString());
+  // Numbers of 0 are the defaults; both one size and several to choose from are too much.
+  v1::PlanOptions few;
+  few.mutable_sizes()->set_powers_of_two(true);
+  const absl::StatusOr<PlanOptions> defaults = PlanOptionsFromProto(few, options.fit);
+  ASSERT_THAT(defaults, IsOk());
+  EXPECT_EQ(defaults->sizes->min_side, MapSizeRules().min_side);
+  v1::PlanOptions bad = proto;
+  bad.mutable_sizes()->set_min_side(4096);
+  EXPECT_THAT(PlanOptionsFromProto(bad, options.fit),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("plan_options.sizes")));
+  bad = proto;
+  bad.clear_texels();
+  bad.mutable_each()->set_width(256);
+  bad.mutable_each()->set_height(256);
+  EXPECT_THAT(PlanOptionsFromProto(bad, options.fit),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("plan_options.each")));
+}
+
 // A light with several maps has no single matrix, and one with one map has both.
 TEST(PlanInResult, OfOneMapIsTheMatrixOfTheLightToo) {
   Random random(15);
