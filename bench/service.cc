@@ -84,6 +84,7 @@ Measured Measure(int num_clients, double duration_s, const Client& call) {
   const auto end = begin + std::chrono::duration_cast<Clock::duration>(
                                std::chrono::duration<double>(duration_s));
   std::vector<std::thread> clients;
+  clients.reserve(num_clients);
   for (int i = 0; i < num_clients; ++i) {
     clients.emplace_back([&, i] {
       do {
@@ -115,6 +116,7 @@ double Median(std::vector<double> values) {
 Measured MedianOf(const std::vector<Measured>& rounds) {
   const auto median = [&](double Measured::*figure) {
     std::vector<double> values;
+    values.reserve(rounds.size());
     for (const Measured& round : rounds) values.push_back(round.*figure);
     return Median(std::move(values));
   };
@@ -131,7 +133,7 @@ struct Contest {
 void Check(const grpc::Status& status) {
   if (status.ok()) return;
   std::fprintf(stderr, "bench_service: %s\n", status.error_message().c_str());
-  std::exit(1);
+  std::quick_exit(1);
 }
 
 std::string Bytes(const auto& values) {
@@ -268,7 +270,7 @@ int Run(const Arguments& arguments) {
     on_pool([&] {
       for (const LightSummary& light : set.lights) {
         const auto summary = SummaryOfTotal(light.total);
-        if (!summary.ok() || !Fit(*summary, light.total.light, kMap).ok()) std::exit(1);
+        if (!summary.ok() || !Fit(*summary, light.total.light, kMap).ok()) std::quick_exit(1);
       }
     });
   };
@@ -317,13 +319,18 @@ int Run(const Arguments& arguments) {
 }  // namespace lightfit
 
 int main(int argc, char** argv) {
-  lightfit::Arguments arguments;
-  CLI::App app("What the service adds to the library.");
-  app.add_option("--size", arguments.size_px, "Pixels on each side of the read-back [180]");
-  app.add_option("--lights", arguments.num_lights, "Lights, at most 32 [8]");
-  app.add_option("--rounds", arguments.num_rounds, "Rounds whose median counts [5]");
-  app.add_option("--round-s", arguments.round_s, "Seconds of each way in a round [1]");
-  app.add_option("--seed", arguments.seed, "Of the scene [7]");
-  CLI11_PARSE(app, argc, argv);
-  return lightfit::Run(arguments);
+  try {
+    lightfit::Arguments arguments;
+    CLI::App app("What the service adds to the library.");
+    app.add_option("--size", arguments.size_px, "Pixels on each side of the read-back [180]");
+    app.add_option("--lights", arguments.num_lights, "Lights, at most 32 [8]");
+    app.add_option("--rounds", arguments.num_rounds, "Rounds whose median counts [5]");
+    app.add_option("--round-s", arguments.round_s, "Seconds of each way in a round [1]");
+    app.add_option("--seed", arguments.seed, "Of the scene [7]");
+    CLI11_PARSE(app, argc, argv);
+    return lightfit::Run(arguments);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "bench_service: %s\n", error.what());
+    return 1;
+  }
 }

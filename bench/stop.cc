@@ -91,7 +91,7 @@ std::vector<Stop> StopOnce(const Call& call, Clock::duration delay) {
   if (status.ok() || end < asked) return {};
   if (!absl::IsCancelled(status)) {
     absl::FPrintF(stderr, "want a cancelled call, not %s\n", status.ToString());
-    std::exit(1);
+    std::quick_exit(1);
   }
   return {{Milliseconds(asked - begin).count(),
            Milliseconds(end - asked).count(),
@@ -118,7 +118,7 @@ class StopTable {
     const absl::Status status = call();
     if (!status.ok()) {
       absl::FPrintF(stderr, "%s: %s\n", name, status.ToString());
-      std::exit(1);
+      std::quick_exit(1);
     }
     const Clock::duration whole = Clock::now() - first_begin;
     std::vector<Stop> stops;
@@ -134,6 +134,7 @@ class StopTable {
     if (stops.empty()) return;
     const double whole_ms = Milliseconds(whole).count();
     std::vector<double> busy_ms;
+    busy_ms.reserve(stops.size());
     for (const Stop& stop : stops) busy_ms.push_back(stop.busy_ms);
     std::sort(busy_ms.begin(), busy_ms.end());
     const auto rank = [&stops](double q) { return static_cast<size_t>(q * (stops.size() - 1)); };

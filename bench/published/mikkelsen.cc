@@ -232,11 +232,11 @@ absl::Status Run(const Arguments& arguments) {
     for (size_t i = 0; i < lights.size(); ++i) {
       const int kind = lights[i].kind == Light::Kind::kPoint ? 1 : 0;
       for (size_t w = 0; w < kWarped.size(); ++w) {
-        const absl::Status status = AddLight((*stages)[ViewOf(i, *stages)],
-                                             lights[i],
-                                             kWarped[w],
-                                             arguments.num_rounds,
-                                             &scenes.back()[w][kind]);
+        absl::Status status = AddLight((*stages)[ViewOf(i, *stages)],
+                                       lights[i],
+                                       kWarped[w],
+                                       arguments.num_rounds,
+                                       &scenes.back()[w][kind]);
         // A lamp among its receivers has no map of any method.
         if (!status.ok() && !absl::IsFailedPrecondition(status)) return status;
       }

@@ -1,4 +1,4 @@
-// bench/lamps.cc : lamps among their receivers, at equal texels, judged by wrong pixels.
+// bench/plans/lamps.cc : lamps among their receivers, at equal texels, judged by wrong pixels.
 //
 // In:   the scenes of bench/scene_set.h, lamps in turn over their cameras; read-backs of 180x180
 //       with the third state.

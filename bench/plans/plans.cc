@@ -1,4 +1,4 @@
-// bench/plans.cc : several maps for one light, at equal texels, judged by wrong pixels.
+// bench/plans/plans.cc : several maps for one light, at equal texels, judged by wrong pixels.
 //
 // In:   the scenes of bench/scene_set.h, lights in turn over their cameras; read-backs of two
 // sizes. Out:  wrong pixels of plans over those of one map with a lit border fitted from the
@@ -26,7 +26,7 @@
 #include "absl/strings/str_format.h"
 #include "base/progress.h"
 #include "base/text_file.h"
-#include "bench/plan_rows.h"
+#include "bench/plans/plan_rows.h"
 #include "bench/scene_set.h"
 #include "jobs/compare/stage.h"
 #include "jobs/schemes/judge_maps.h"

@@ -1,4 +1,5 @@
-// bench/plan_sequence.cc : what stable plans of several maps cost over a shot, and save in crawl.
+// bench/plans/plan_sequence.cc : what stable plans of several maps cost over a shot, and save in
+// crawl.
 //
 // In:   a folder of read-backs (by default shot_walk beside the repository) with scene.json; or
 //       --boxes N: walks through random scenes.

@@ -1,4 +1,4 @@
-// bench/plan_rows.h
+// bench/plans/plan_rows.h
 //
 // Several maps for one light in every way there is: the rows of bench_plans.
 // In:   how many maps ours may have; read-backs of two sizes.

@@ -1,4 +1,4 @@
-#include "bench/plan_rows.h"
+#include "bench/plans/plan_rows.h"
 
 #include "absl/strings/str_cat.h"
 #include "jobs/schemes/fitted.h"
