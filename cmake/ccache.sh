@@ -8,22 +8,21 @@
 # (CCACHE_PCH_EXTSUM in scripts/common.sh).
 pch='' dependencies='' previous='' is_pch=''
 for argument in "$@"; do
+  shift
   case $previous in
     -o) pch=$argument ;;
     -MF) dependencies=$argument ;;
   esac
   previous=$argument
-  if [ "$argument" = -emit-pch ]; then is_pch=1; fi
+  case $argument in
+    -emit-pch) is_pch=1 ;;
+    # CMake gives clang a path that ccache does not know for one, and so does not make relative. What
+    # was precompiled must have the same name.
+    "$PWD"/*/cmake_pch.hxx) argument=${argument#"$PWD/"} ;;
+  esac
+  set -- "$@" "$argument"
 done
-if [ -z "$is_pch" ]; then
-  # CMake gives clang a path that ccache does not know for one, and so does not make relative.
-  for argument in "$@"; do
-    shift
-    case $argument in "$PWD"/*/cmake_pch.hxx) argument=${argument#"$PWD/"} ;; esac
-    set -- "$@" "$argument"
-  done
-  exec ccache "$@"
-fi
+if [ -z "$is_pch" ]; then exec ccache "$@"; fi
 
 rm -f "$pch.sum"
 "$@" || exit
