@@ -213,7 +213,7 @@ class FrameTracker {
     return LayPlanOfOne(*view_, tight, view_fit_, DepthRoom());
   }
 
-  absl::StatusOr<LightPlan> LayRoomy(KeptMaps maps) {
+  absl::StatusOr<LightPlan> LayRoomy(const KeptMaps& maps) {
     const absl::StatusOr<ServedRays> rays = FindServedRays(*view_, view_fit_);
     if (!rays.ok()) return rays.status();
     const PlanKeeper keeper(*view_, *rays, maps, tight_, roomy_fit_);
