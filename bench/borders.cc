@@ -25,7 +25,8 @@
 #include "bench/forecast_table.h"
 #include "bench/inputs.h"
 #include "bench/readback_borders.h"
-#include "bench/scene_set.h"
+#include "bench/scene_run.h"
+#include "bench/wrong_ratio.h"
 #include "jobs/compare/stage.h"
 #include "methods/method.h"
 #include "optimizer/figures/foretell.h"
@@ -40,15 +41,9 @@ namespace {
 constexpr MapSize kMap = {400, 400};
 
 struct Arguments {
-  int num_lights = 20;
-  uint64_t seed = 43;
+  SceneArguments scenes = {.num_lights = 20, .seed = 43};
   int readback = 180;
   int fine_readback = 720;
-  int phases = 4;
-  std::string half;  // empty: both
-  std::string only;
-  std::string folder = DefaultSceneFolder();
-  std::string csv_path;
 };
 
 // The rows, in this order.
@@ -157,7 +152,7 @@ class LightBench {
       map_from_world = map->map_from_world;
     }
     JudgeOptions judge;
-    judge.phases = arguments_.phases;
+    judge.phases = arguments_.scenes.phases;
     const absl::StatusOr<ShadowImage> image = JudgeMatrix(
         *stage_.caster, stage_.screen, truth_, light_, {map_from_world, kMap, border}, judge);
     if (!image.ok()) return image.status();
@@ -217,7 +212,7 @@ absl::Status MeasureScene(size_t index,
                           Progress& progress,
                           std::vector<LightRow>* rows) {
   const SceneCase& scene = SceneCases()[index];
-  const absl::StatusOr<RayCaster> caster = LoadSceneCase(scene, arguments.folder);
+  const absl::StatusOr<RayCaster> caster = LoadSceneCase(scene, arguments.scenes.folder);
   if (!caster.ok()) return caster.status();
   const absl::StatusOr<std::vector<CompareStage>> stages =
       MakeStages(scene, *caster, arguments.readback);
@@ -226,7 +221,7 @@ absl::Status MeasureScene(size_t index,
       MakeStages(scene, *caster, arguments.fine_readback);
   if (!fine.ok()) return fine.status();
   const std::vector<Light> lights =
-      DrawLights(scene, *caster, arguments.num_lights, arguments.seed);
+      DrawLights(scene, *caster, arguments.scenes.num_lights, arguments.scenes.seed);
   for (size_t i = 0; i < lights.size(); ++i) {
     progress.Begin(absl::StrCat(scene.name, ": ", lights[i].name));
     const size_t view = ViewOf(i, *stages);
@@ -248,16 +243,11 @@ std::string RatioText(const std::vector<const LightRow*>& lights,
                       int row,
                       int reference,
                       double Measured::*kind) {
-  double sum = 0.0, sum_reference = 0.0, log_sum = 0.0;
+  WrongRatio ratio;
   for (const LightRow* light : lights) {
-    const double wrong = light->rows[row].*kind, other = light->rows[reference].*kind;
-    sum += wrong;
-    sum_reference += other;
-    log_sum += std::log((wrong + 1.0) / (other + 1.0));
+    ratio.Add(light->rows[row].*kind, light->rows[reference].*kind);
   }
-  const double num_lights = std::max<double>(1.0, static_cast<double>(lights.size()));
-  return absl::StrFormat(
-      "%.2f %.2f", sum / std::max(1.0, sum_reference), std::exp(log_sum / num_lights));
+  return ratio.Text();
 }
 
 // Lights on which a row has more than 1.1 times the fewest of all methods that are not ours.
@@ -356,26 +346,20 @@ absl::Status WriteCsv(const std::string& path, const std::vector<LightRow>& rows
 absl::Status Run(const Arguments& arguments) {
   std::vector<LightRow> rows;
   {
-    Progress progress(arguments.num_lights * static_cast<int>(SceneCases().size()));
-    for (size_t i = 0; i < SceneCases().size(); ++i) {
-      const SceneCase& scene = SceneCases()[i];
-      if (!arguments.only.empty() && scene.name != arguments.only) continue;
-      if (!arguments.half.empty() && (arguments.half == "tuning") != IsForTuning(i)) continue;
-      absl::Status status = MeasureScene(i, arguments, progress, &rows);
-      if (absl::IsNotFound(status)) {
-        std::printf("%s left out: %s\n", scene.name.c_str(), std::string(status.message()).c_str());
-        continue;
-      }
-      if (!status.ok()) return status;
-    }
+    Progress progress(arguments.scenes.num_lights * static_cast<int>(SceneCases().size()));
+    const absl::Status status = ForEachScene(arguments.scenes, [&](size_t scene) {
+      return MeasureScene(scene, arguments, progress, &rows);
+    });
+    if (!status.ok()) return status;
   }
   Print(rows);
-  if (arguments.only.empty()) {
+  if (arguments.scenes.only.empty()) {
     const absl::StatusOr<std::string> text = ReadbackBordersText(DefaultReadbackFolder(), kMap);
     if (!text.ok()) return text.status();
     std::printf("%s", text->c_str());
   }
-  return arguments.csv_path.empty() ? absl::OkStatus() : WriteCsv(arguments.csv_path, rows);
+  const std::string& path = arguments.scenes.csv_path;
+  return path.empty() ? absl::OkStatus() : WriteCsv(path, rows);
 }
 
 }  // namespace
@@ -384,23 +368,15 @@ absl::Status Run(const Arguments& arguments) {
 int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): options are ours
   lightfit::Arguments arguments;
   CLI::App app("Borders and finer covers, judged by wrong pixels; and how well they are foretold.");
-  app.add_option("--lights", arguments.num_lights, "Per scene")->capture_default_str();
-  app.add_option("--seed", arguments.seed, "Of the lights")->capture_default_str();
+  lightfit::DeclareLights(&app, "--lights", &arguments.scenes);
   app.add_option("--readback", arguments.readback, "Side of the read-back, pixels")
       ->capture_default_str();
   app.add_option("--fine", arguments.fine_readback, "Side of the finer cover's image, pixels")
       ->capture_default_str();
-  app.add_option("--phases", arguments.phases, "That counts are averaged over")
-      ->capture_default_str();
-  app.add_option("--half", arguments.half, "tuning or report; default both")
-      ->check(CLI::IsMember({"tuning", "report"}));
-  app.add_option("--only", arguments.only, "One scene, by name");
-  app.add_option("--scenes", arguments.folder, "Folder with the scene files")
-      ->capture_default_str();
-  app.add_option("--csv", arguments.csv_path, "One row per light and method");
+  lightfit::DeclarePhases(&app, &arguments.scenes.phases);
+  lightfit::DeclareHalf(&app, &arguments.scenes);
+  lightfit::DeclareScenes(&app, &arguments.scenes);
+  lightfit::DeclareCsv(&app, &arguments.scenes);
   CLI11_PARSE(app, argc, argv);
-  const absl::Status status = lightfit::Run(arguments);
-  if (status.ok()) return 0;
-  std::fprintf(stderr, "borders: %s\n", std::string(status.message()).c_str());
-  return 1;
+  return lightfit::ExitCodeOf("borders", lightfit::Run(arguments));
 }

@@ -20,7 +20,8 @@
 #include "absl/strings/str_format.h"
 #include "base/progress.h"
 #include "base/text_file.h"
-#include "bench/scene_set.h"
+#include "bench/scene_run.h"
+#include "bench/wrong_ratio.h"
 #include "jobs/compare/stage.h"
 #include "optimizer/figures/foretell.h"
 #include "optimizer/fit.h"
@@ -33,12 +34,8 @@ namespace {
 constexpr MapSize kMap = {400, 400};
 
 struct Arguments {
-  int num_lights = 30;
-  uint64_t seed = 7;
+  SceneArguments scenes = {.num_lights = 30, .seed = 7};
   int readback = 180;
-  JudgeOptions judge = {.phases = 4};
-  std::string folder = DefaultSceneFolder();
-  std::string csv_path;
 };
 
 struct Variant {
@@ -126,13 +123,14 @@ absl::Status MeasureScene(size_t index,
                           Progress& progress,
                           std::vector<LightRow>* rows) {
   const SceneCase& scene = SceneCases()[index];
-  const absl::StatusOr<RayCaster> caster = LoadSceneCase(scene, arguments.folder);
+  const JudgeOptions judge = {.phases = arguments.scenes.phases};
+  const absl::StatusOr<RayCaster> caster = LoadSceneCase(scene, arguments.scenes.folder);
   if (!caster.ok()) return caster.status();
   const absl::StatusOr<std::vector<CompareStage>> stages =
       MakeStages(scene, *caster, arguments.readback);
   if (!stages.ok()) return stages.status();
   const std::vector<Light> lights =
-      DrawLights(scene, *caster, arguments.num_lights, arguments.seed);
+      DrawLights(scene, *caster, arguments.scenes.num_lights, arguments.scenes.seed);
   for (size_t i = 0; i < lights.size(); ++i) {
     progress.Begin(absl::StrCat(scene.name, ": ", lights[i].name));
     const CompareStage& stage = (*stages)[ViewOf(i, *stages)];
@@ -143,7 +141,7 @@ absl::Status MeasureScene(size_t index,
     LightRow row = {scene.name, lights[i].name, IsForTuning(index), {}};
     for (const Variant& variant : variants) {
       const absl::StatusOr<Measured> measured =
-          Measure(stage, *readback, truth, lights[i], variant, arguments.judge);
+          Measure(stage, *readback, truth, lights[i], variant, judge);
       if (!measured.ok()) break;  // no shadow in view, or receivers all around: no row
       row.measured.push_back(*measured);
     }
@@ -153,25 +151,18 @@ absl::Status MeasureScene(size_t index,
   return absl::OkStatus();
 }
 
-// Totals and geometric mean over the defaults' of one half.
-struct Ratios {
-  double total = 0.0, mean = 0.0;
-};
-Ratios RatiosOf(const std::vector<LightRow>& rows,
-                bool tuning,
-                size_t variant,
-                double Measured::*kind) {
-  double sum = 0.0, sum_default = 0.0, log_sum = 0.0;
-  int count = 0;
+// Over the defaults' of one half.
+WrongRatio RatioOf(const std::vector<LightRow>& rows,
+                   bool tuning,
+                   size_t variant,
+                   double Measured::*kind) {
+  WrongRatio ratio;
   for (const LightRow& row : rows) {
-    if (row.is_for_tuning != tuning) continue;
-    const double wrong = row.measured[variant].*kind, reference = row.measured[0].*kind;
-    sum += wrong;
-    sum_default += reference;
-    log_sum += std::log((wrong + 1.0) / (reference + 1.0));
-    ++count;
+    if (row.is_for_tuning == tuning) {
+      ratio.Add(row.measured[variant].*kind, row.measured[0].*kind);
+    }
   }
-  return {sum / std::max(1.0, sum_default), std::exp(log_sum / std::max(1, count))};
+  return ratio;
 }
 
 void PrintRatios(const std::vector<LightRow>& rows, const std::vector<Variant>& variants) {
@@ -186,8 +177,8 @@ void PrintRatios(const std::vector<LightRow>& rows, const std::vector<Variant>& 
     std::printf("%-32s", variants[variant].name.c_str());
     for (const bool tuning : {true, false}) {
       for (const auto kind : {&Measured::ideal, &Measured::practical}) {
-        const Ratios ratios = RatiosOf(rows, tuning, variant, kind);
-        std::printf("    %.3f %.3f", ratios.total, ratios.mean);
+        const WrongRatio ratio = RatioOf(rows, tuning, variant, kind);
+        std::printf("    %.3f %.3f", ratio.total(), ratio.mean());
       }
     }
     std::printf("\n");
@@ -268,21 +259,16 @@ absl::Status WriteCsv(const std::string& path,
 }
 
 absl::Status Run(const Arguments& arguments) {
-  if (absl::Status status = ValidateJudgeOptions(arguments.judge); !status.ok()) return status;
+  const JudgeOptions judge = {.phases = arguments.scenes.phases};
+  if (absl::Status status = ValidateJudgeOptions(judge); !status.ok()) return status;
   const std::vector<Variant> variants = Variants();
   std::vector<LightRow> rows;
   {
-    Progress progress(arguments.num_lights * static_cast<int>(SceneCases().size()));
-    for (size_t i = 0; i < SceneCases().size(); ++i) {
-      absl::Status status = MeasureScene(i, arguments, variants, progress, &rows);
-      if (absl::IsNotFound(status)) {
-        std::printf("%s left out: %s\n",
-                    SceneCases()[i].name.c_str(),
-                    std::string(status.message()).c_str());
-        continue;
-      }
-      if (!status.ok()) return status;
-    }
+    Progress progress(arguments.scenes.num_lights * static_cast<int>(SceneCases().size()));
+    const absl::Status status = ForEachScene(arguments.scenes, [&](size_t scene) {
+      return MeasureScene(scene, arguments, variants, progress, &rows);
+    });
+    if (!status.ok()) return status;
   }
   const auto num_tuning = std::count_if(
       rows.begin(), rows.end(), [](const LightRow& row) { return row.is_for_tuning; });
@@ -292,8 +278,8 @@ absl::Status Run(const Arguments& arguments) {
       static_cast<int>(rows.size() - num_tuning));
   PrintRatios(rows, variants);
   PrintForetold(rows);
-  return arguments.csv_path.empty() ? absl::OkStatus()
-                                    : WriteCsv(arguments.csv_path, rows, variants);
+  const std::string& path = arguments.scenes.csv_path;
+  return path.empty() ? absl::OkStatus() : WriteCsv(path, rows, variants);
 }
 
 }  // namespace
@@ -302,20 +288,12 @@ absl::Status Run(const Arguments& arguments) {
 int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): options are ours
   lightfit::Arguments arguments;
   CLI::App app("Every default of the fit against its alternatives, judged by wrong pixels.");
-  app.add_option("--lights", arguments.num_lights, "Per scene")->capture_default_str();
-  app.add_option("--seed", arguments.seed, "Of the lights")->capture_default_str();
+  lightfit::DeclareLights(&app, "--lights", &arguments.scenes);
   app.add_option("--readback", arguments.readback, "Side of the read-back, pixels")
       ->capture_default_str();
-  app.add_option("--scenes", arguments.folder, "Folder with the scene files")
-      ->capture_default_str();
-  app.add_option("--phases",
-                 arguments.judge.phases,
-                 "That wrong pixels are means over, JudgeOptions::phases")
-      ->capture_default_str();
-  app.add_option("--csv", arguments.csv_path, "One row per light and alternative");
+  lightfit::DeclarePhases(&app, &arguments.scenes.phases);
+  lightfit::DeclareScenes(&app, &arguments.scenes);
+  lightfit::DeclareCsv(&app, &arguments.scenes);
   CLI11_PARSE(app, argc, argv);
-  const absl::Status status = lightfit::Run(arguments);
-  if (status.ok()) return 0;
-  std::fprintf(stderr, "defaults: %s\n", std::string(status.message()).c_str());
-  return 1;
+  return lightfit::ExitCodeOf("defaults", lightfit::Run(arguments));
 }

@@ -17,7 +17,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "base/progress.h"
-#include "bench/scene_set.h"
+#include "bench/scene_run.h"
 #include "bench/wrong_pixel_table.h"
 #include "jobs/compare/rows.h"
 #include "jobs/compare/stage.h"
@@ -26,11 +26,7 @@ namespace lightfit {
 namespace {
 
 struct Arguments {
-  int num_lights = 100;
-  uint64_t seed = 1;
-  std::string folder = DefaultSceneFolder();
-  std::string only;
-  std::string csv_path;
+  SceneArguments scenes = {.num_lights = 100, .seed = 1};
   CompareOptions compare;
 };
 
@@ -42,13 +38,13 @@ absl::Status AddScene(const SceneCase& scene,
                       const Arguments& arguments,
                       Progress& progress,
                       const std::vector<WrongPixelTable*>& tables) {
-  const absl::StatusOr<RayCaster> caster = LoadSceneCase(scene, arguments.folder);
+  const absl::StatusOr<RayCaster> caster = LoadSceneCase(scene, arguments.scenes.folder);
   if (!caster.ok()) return caster.status();
   constexpr int kReadback = 180;
   const absl::StatusOr<std::vector<CompareStage>> stages = MakeStages(scene, *caster, kReadback);
   if (!stages.ok()) return stages.status();
   const std::vector<Light> lights =
-      DrawLights(scene, *caster, arguments.num_lights, arguments.seed);
+      DrawLights(scene, *caster, arguments.scenes.num_lights, arguments.scenes.seed);
   for (size_t i = 0; i < lights.size(); ++i) {
     progress.Begin(absl::StrCat(scene.name, ": ", lights[i].name));
     const size_t view = ViewOf(i, *stages);
@@ -78,22 +74,19 @@ absl::Status Run(const Arguments& arguments) {
   WrongPixelTable all(kMethods);
   std::vector<std::pair<std::string, WrongPixelTable>> tables;
   {
-    Progress progress(arguments.num_lights * static_cast<int>(SceneCases().size()));
-    for (const SceneCase& scene : SceneCases()) {
-      if (!arguments.only.empty() && scene.name != arguments.only) continue;
+    Progress progress(arguments.scenes.num_lights * static_cast<int>(SceneCases().size()));
+    const absl::Status status = ForEachScene(arguments.scenes, [&](size_t scene) {
       WrongPixelTable table(kMethods);
-      absl::Status status = AddScene(scene, arguments, progress, {&all, &table});
-      if (absl::IsNotFound(status)) {
-        std::printf("%s left out: %s\n", scene.name.c_str(), std::string(status.message()).c_str());
-        continue;
-      }
-      if (!status.ok()) return status;
-      tables.emplace_back(scene.name, std::move(table));
-    }
+      absl::Status added = AddScene(SceneCases()[scene], arguments, progress, {&all, &table});
+      if (added.ok()) tables.emplace_back(SceneCases()[scene].name, std::move(table));
+      return added;
+    });
+    if (!status.ok()) return status;
   }
   for (const auto& [name, table] : tables) Print(name, table);
   Print("all scenes", all);
-  return arguments.csv_path.empty() ? absl::OkStatus() : all.WriteCsv(arguments.csv_path);
+  const std::string& path = arguments.scenes.csv_path;
+  return path.empty() ? absl::OkStatus() : all.WriteCsv(path);
 }
 
 }  // namespace
@@ -104,19 +97,10 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): options
   // As on the command line.
   arguments.compare.fit.border = lightfit::BorderChoice::kAutomatic;
   CLI::App app("Wrong shadow pixels of every method on real scenes.");
-  app.add_option("--lights", arguments.num_lights, "Per scene")->capture_default_str();
-  app.add_option("--seed", arguments.seed, "Of the lights")->capture_default_str();
-  app.add_option("--scenes", arguments.folder, "Folder with the scene files")
-      ->capture_default_str();
-  app.add_option("--only", arguments.only, "One scene, by name");
-  app.add_option("--phases",
-                 arguments.compare.judge.phases,
-                 "That wrong pixels are means over, JudgeOptions::phases")
-      ->capture_default_str();
-  app.add_option("--csv", arguments.csv_path, "One row per light");
+  lightfit::DeclareLights(&app, "--lights", &arguments.scenes);
+  lightfit::DeclareScenes(&app, &arguments.scenes);
+  lightfit::DeclarePhases(&app, &arguments.compare.judge.phases);
+  lightfit::DeclareCsv(&app, &arguments.scenes);
   CLI11_PARSE(app, argc, argv);
-  const absl::Status status = lightfit::Run(arguments);
-  if (status.ok()) return 0;
-  std::fprintf(stderr, "scenes: %s\n", std::string(status.message()).c_str());
-  return 1;
+  return lightfit::ExitCodeOf("scenes", lightfit::Run(arguments));
 }

@@ -20,18 +20,14 @@
 #include "base/csv.h"
 #include "base/progress.h"
 #include "base/text_file.h"
-#include "bench/scene_set.h"
+#include "bench/scene_run.h"
 #include "jobs/compare/stage.h"
 
 namespace lightfit {
 namespace {
 
 struct Arguments {
-  int num_lights = 3;
-  uint64_t seed = 41;
-  std::string folder = DefaultSceneFolder();
-  std::string only;
-  std::string csv_path;
+  SceneArguments scenes = {.num_lights = 3, .seed = 41};
   TuneOptions tune;
 };
 
@@ -75,13 +71,13 @@ absl::Status TuneScene(const SceneCase& scene,
                        Progress& progress,
                        std::vector<TunedLight>* all,
                        std::string* csv) {
-  const absl::StatusOr<RayCaster> caster = LoadSceneCase(scene, arguments.folder);
+  const absl::StatusOr<RayCaster> caster = LoadSceneCase(scene, arguments.scenes.folder);
   if (!caster.ok()) return caster.status();
   constexpr int kReadback = 180;
   const absl::StatusOr<std::vector<CompareStage>> stages = MakeStages(scene, *caster, kReadback);
   if (!stages.ok()) return stages.status();
   const std::vector<Light> lights =
-      DrawLights(scene, *caster, arguments.num_lights, arguments.seed);
+      DrawLights(scene, *caster, arguments.scenes.num_lights, arguments.scenes.seed);
   std::vector<TunedLight> tuned;
   for (size_t i = 0; i < lights.size(); ++i) {
     progress.Begin(absl::StrCat(scene.name, ": ", lights[i].name));
@@ -105,21 +101,16 @@ absl::Status Run(const Arguments& arguments) {
   std::vector<TunedLight> all;
   std::string csv = "view,light,fit,limit,fit_other_phases,limit_other_phases,evaluations,note\n";
   {
-    Progress progress(arguments.num_lights * static_cast<int>(SceneCases().size()));
-    for (const SceneCase& scene : SceneCases()) {
-      if (!arguments.only.empty() && scene.name != arguments.only) continue;
-      absl::Status status = TuneScene(scene, arguments, progress, &all, &csv);
-      if (absl::IsNotFound(status)) {
-        std::printf("%s left out: %s\n", scene.name.c_str(), std::string(status.message()).c_str());
-        continue;
-      }
-      if (!status.ok()) return status;
-    }
+    Progress progress(arguments.scenes.num_lights * static_cast<int>(SceneCases().size()));
+    const absl::Status status = ForEachScene(arguments.scenes, [&](size_t scene) {
+      return TuneScene(SceneCases()[scene], arguments, progress, &all, &csv);
+    });
+    if (!status.ok()) return status;
   }
   Print("all scenes", all);
   std::printf("\n%s", csv.c_str());
-  return arguments.csv_path.empty() ? absl::OkStatus()
-                                    : WriteTextFileAtomically(arguments.csv_path, csv);
+  const std::string& path = arguments.scenes.csv_path;
+  return path.empty() ? absl::OkStatus() : WriteTextFileAtomically(path, csv);
 }
 
 }  // namespace
@@ -129,17 +120,11 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): options
   lightfit::Arguments arguments;
   arguments.tune.evaluations = 200;
   CLI::App app("How far fits are from the fewest wrong pixels there are.");
-  app.add_option("--lights", arguments.num_lights, "Per scene")->capture_default_str();
-  app.add_option("--seed", arguments.seed, "Of the lights")->capture_default_str();
+  lightfit::DeclareLights(&app, "--lights", &arguments.scenes);
   app.add_option("--evaluations", arguments.tune.evaluations, "Maps tried for each light")
       ->capture_default_str();
-  app.add_option("--scenes", arguments.folder, "Folder with the scene files")
-      ->capture_default_str();
-  app.add_option("--only", arguments.only, "One scene, by name");
-  app.add_option("--csv", arguments.csv_path, "One row per light");
+  lightfit::DeclareScenes(&app, &arguments.scenes);
+  lightfit::DeclareCsv(&app, &arguments.scenes);
   CLI11_PARSE(app, argc, argv);
-  const absl::Status status = lightfit::Run(arguments);
-  if (status.ok()) return 0;
-  std::fprintf(stderr, "tune: %s\n", std::string(status.message()).c_str());
-  return 1;
+  return lightfit::ExitCodeOf("tune", lightfit::Run(arguments));
 }

@@ -114,3 +114,9 @@ sources() {
   find . \( -path ./build -o -path ./out -o -path ./.git \) -prune -o \
     -type f \( -name '*.h' -o -name '*.cc' \) -print | sort
 }
+
+# benchmarks: the name of every program in bench/.
+benchmarks() {
+  find bench -name CMakeLists.txt -exec sed -nE 's/^lightfit_benchmark\(([a-z0-9_]+).*/\1/p' {} + |
+    sort
+}

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # ./run lint [CHECK...] : what a reviewer should not have to say.
 # Checks the layout (clang-format), that folders include only what lies below them and are not
-# crowded, that every folder has its overview, the shell scripts, and the checks of .clang-tidy, or
+# crowded, that every folder has its overview, that benchmarks are there by the names they are
+# quoted by, the shell scripts, and the checks of .clang-tidy, or
 # those named alone. Ends with 0 when all hold.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -51,6 +52,19 @@ check_overviews() {
   done < <(find "${rooms[@]}" -name '*.h' | sort)
 }
 
+# What is quoted with its command can be run by it.
+check_benchmarks() {
+  say "benchmarks"
+  local name
+  while read -r name; do
+    benchmarks | grep -qx "$name" || fault "./run bench $name: is named in README.md or docs/, and is none"
+  done < <(grep -ohE '\./run bench [a-z0-9_]+' README.md docs/*.md bench/README.md CHANGELOG.md |
+    cut -d ' ' -f 3 | sort -u)
+  while read -r name; do
+    grep -q "^| \`bench_$name\`" bench/README.md || fault "bench/README.md: no row for bench_$name"
+  done < <(benchmarks)
+}
+
 check_scripts() {
   say "shell scripts"
   shellcheck -x run .ci/run scripts/*.sh cmake/*.sh || fault "shellcheck is not content"
@@ -63,10 +77,10 @@ check_tidy() {
   /usr/bin/python3 scripts/check_tidy.py "$(num_jobs)" || fault "clang-tidy is not content"
 }
 
-checks=(layout layers overviews scripts tidy)
+checks=(layout layers overviews benchmarks scripts tidy)
 if (($#)); then
   for check in "$@"; do
-    [[ $check =~ ^(layout|layers|overviews|scripts|tidy)$ ]] ||
+    [[ $check =~ ^(layout|layers|overviews|benchmarks|scripts|tidy)$ ]] ||
       die "lint \"$check\": want some of ${checks[*]}"
   done
   checks=("$@")

@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "absl/strings/str_format.h"
-#include "bench/scene_set.h"
+#include "bench/scene_run.h"
 #include "geometry/homography.h"
 #include "geometry/polygon.h"
 #include "jobs/compare/stage.h"
@@ -32,11 +32,8 @@ namespace lightfit {
 namespace {
 
 struct Arguments {
-  int num_lights = 12;
-  uint64_t seed = 7;
+  SceneArguments scenes = {.num_lights = 12, .seed = 7};
   int num_rounds = 20;
-  std::string only;
-  std::string folder = DefaultSceneFolder();
 };
 
 constexpr int kReadback = 180;
@@ -214,34 +211,31 @@ absl::Status Run(const Arguments& arguments) {
   std::array<std::array<Table, 2>, kWarped.size()> all;
   std::vector<std::string> names;
   std::vector<std::array<std::array<Table, 2>, kWarped.size()>> scenes;
-  for (const SceneCase& scene : SceneCases()) {
-    if (!arguments.only.empty() && scene.name != arguments.only) continue;
-    const absl::StatusOr<RayCaster> caster = LoadSceneCase(scene, arguments.folder);
-    if (absl::IsNotFound(caster.status())) {
-      std::printf(
-          "%s left out: %s\n", scene.name.c_str(), std::string(caster.status().message()).c_str());
-      continue;
-    }
+  const absl::Status status = ForEachScene(arguments.scenes, [&](size_t index) -> absl::Status {
+    const SceneCase& scene = SceneCases()[index];
+    const absl::StatusOr<RayCaster> caster = LoadSceneCase(scene, arguments.scenes.folder);
     if (!caster.ok()) return caster.status();
     const absl::StatusOr<std::vector<CompareStage>> stages = MakeStages(scene, *caster, kReadback);
     if (!stages.ok()) return stages.status();
     const std::vector<Light> lights =
-        DrawLights(scene, *caster, arguments.num_lights, arguments.seed);
+        DrawLights(scene, *caster, arguments.scenes.num_lights, arguments.scenes.seed);
     names.push_back(scene.name);
     scenes.emplace_back();
     for (size_t i = 0; i < lights.size(); ++i) {
       const int kind = lights[i].kind == Light::Kind::kPoint ? 1 : 0;
       for (size_t w = 0; w < kWarped.size(); ++w) {
-        absl::Status status = AddLight((*stages)[ViewOf(i, *stages)],
-                                       lights[i],
-                                       kWarped[w],
-                                       arguments.num_rounds,
-                                       &scenes.back()[w][kind]);
+        absl::Status added = AddLight((*stages)[ViewOf(i, *stages)],
+                                      lights[i],
+                                      kWarped[w],
+                                      arguments.num_rounds,
+                                      &scenes.back()[w][kind]);
         // A lamp among its receivers has no map of any method.
-        if (!status.ok() && !absl::IsFailedPrecondition(status)) return status;
+        if (!added.ok() && !absl::IsFailedPrecondition(added)) return added;
       }
     }
-  }
+    return absl::OkStatus();
+  });
+  if (!status.ok()) return status;
   for (size_t w = 0; w < kWarped.size(); ++w) {
     PrintHead(kWarped[w]);
     for (const int kind : {0, 1}) {
@@ -262,15 +256,9 @@ absl::Status Run(const Arguments& arguments) {
 int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): options are ours
   lightfit::Arguments arguments;
   CLI::App app("Separating planes: which of two maps serves the pixels.");
-  app.add_option("--lights", arguments.num_lights, "Per scene")->capture_default_str();
-  app.add_option("--seed", arguments.seed, "Of the lights")->capture_default_str();
+  lightfit::DeclareLights(&app, "--lights", &arguments.scenes);
   app.add_option("--rounds", arguments.num_rounds, "At most")->capture_default_str();
-  app.add_option("--only", arguments.only, "One scene, by name");
-  app.add_option("--scenes", arguments.folder, "Folder with the scene files")
-      ->capture_default_str();
+  lightfit::DeclareScenes(&app, &arguments.scenes);
   CLI11_PARSE(app, argc, argv);
-  const absl::Status status = lightfit::Run(arguments);
-  if (status.ok()) return 0;
-  std::fprintf(stderr, "mikkelsen: %s\n", std::string(status.message()).c_str());
-  return 1;
+  return lightfit::ExitCodeOf("mikkelsen", lightfit::Run(arguments));
 }

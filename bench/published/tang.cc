@@ -25,7 +25,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/scene_set.h"
+#include "bench/scene_run.h"
 #include "geometry/resized_camera.h"
 #include "partition/published/light_partition.h"
 #include "render/surface_image.h"
@@ -38,9 +38,8 @@ enum Bounds { kFloor, kBox, kSeen, kNumBounds };
 constexpr std::array kBoundsNames = {"floor", "box", "seen"};
 
 struct Arguments {
+  SceneArguments scenes;
   int num_frames = 300;
-  std::string only;
-  std::string folder = DefaultSceneFolder();
 };
 
 constexpr std::array kZetas = {0.05, 0.10, 0.15, 0.20, 0.25, 0.30, 0.35, 0.40, 0.45};
@@ -184,14 +183,9 @@ absl::Status Run(const Arguments& arguments) {
   std::printf("   rows at 0.25\n");
   double worst = 0.0;
   std::array<Walk, kNumBounds> all;
-  for (const SceneCase& scene : SceneCases()) {
-    if (!arguments.only.empty() && scene.name != arguments.only) continue;
-    const absl::StatusOr<RayCaster> caster = LoadSceneCase(scene, arguments.folder);
-    if (absl::IsNotFound(caster.status())) {
-      std::printf(
-          "%s left out: %s\n", scene.name.c_str(), std::string(caster.status().message()).c_str());
-      continue;
-    }
+  const absl::Status status = ForEachScene(arguments.scenes, [&](size_t index) -> absl::Status {
+    const SceneCase& scene = SceneCases()[index];
+    const absl::StatusOr<RayCaster> caster = LoadSceneCase(scene, arguments.scenes.folder);
     if (!caster.ok()) return caster.status();
     for (int bounds = kFloor; bounds < kNumBounds; ++bounds) {
       Walk walk;
@@ -210,7 +204,9 @@ absl::Status Run(const Arguments& arguments) {
       all[bounds].Add(walk);
       worst = std::max(worst, walk.worst);
     }
-  }
+    return absl::OkStatus();
+  });
+  if (!status.ok()) return status;
   for (int bounds = kFloor; bounds < kNumBounds; ++bounds) {
     Print("all", kBoundsNames[bounds], all[bounds]);
   }
@@ -232,12 +228,7 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): options
   CLI::App app("Light-space partitions: how many maps they need.");
   app.add_option("--frames", arguments.num_frames, "Of the walk through each scene")
       ->capture_default_str();
-  app.add_option("--only", arguments.only, "One scene, by name");
-  app.add_option("--scenes", arguments.folder, "Folder with the scene files")
-      ->capture_default_str();
+  lightfit::DeclareScenes(&app, &arguments.scenes);
   CLI11_PARSE(app, argc, argv);
-  const absl::Status status = lightfit::Run(arguments);
-  if (status.ok()) return 0;
-  std::fprintf(stderr, "tang: %s\n", std::string(status.message()).c_str());
-  return 1;
+  return lightfit::ExitCodeOf("tang", lightfit::Run(arguments));
 }
