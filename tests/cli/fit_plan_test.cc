@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
+#include <Eigen/Core>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -13,13 +13,14 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
-#include "geometry/affine_depth.h"
 #include "geometry/clip.h"
 #include "io/lights_file.h"
 #include "io/readback_exr.h"
+#include "optimizer/readback/surfaces.h"
 #include "partition/plan.h"
 #include "tests/cli/examples.h"
 #include "tests/cli/summaries.h"
+#include "tests/partition/receivers.h"
 #include "tests/testing/process.h"
 #include "wire/plan_proto.h"
 
@@ -105,7 +106,8 @@ TEST(FitPlan, EveryShadowedPixelAsksAMap) {
   const absl::StatusOr<ReadbackFile> file = ReadReadbackExr(kYard, *lights);
   ASSERT_TRUE(file.ok()) << file.status();
   const Readback readback = file->View();
-  const AffineDepth affine_depth(readback.camera, readback.depth_kind);
+  const absl::StatusOr<Surfaces> surfaces = FindSurfaces(readback, LightMask(*lights), {});
+  ASSERT_TRUE(surfaces.ok()) << surfaces.status();
   for (const char* guard : {"0", "2"}) {
     const v1::FitResult result =
         FitJson(Joined(kFitYard, {"--maps", "4", "--border", "lit", "--guard", guard}));
@@ -121,20 +123,15 @@ TEST(FitPlan, EveryShadowedPixelAsksAMap) {
       ASSERT_TRUE(look_up.ok()) << look_up.status();
       int num_shadowed = 0, num_lost = 0;
       std::map<int, int> num_asking;
-      for (int y = 0; y < readback.height(); ++y) {
-        for (int x = 0; x < readback.width(); ++x) {
-          const size_t pixel = readback.Index(x, y);
-          const double depth = readback.depth[pixel];
-          if (!affine_depth.IsSurface(depth)) continue;
-          if (((readback.shadow_bits[pixel] >> light.shadow_bit) & 1u) == 0) continue;
-          const Eigen::Vector4d screen(x + 0.5, y + 0.5, affine_depth.At(x, y, depth), 1.0);
-          const Eigen::Vector3d world = (readback.camera.WorldFromScreen() * screen).hnormalized();
-          const int map = look_up->At(world).map;
-          ++num_shadowed;
-          num_lost += map < 0 ? 1 : 0;
-          ++num_asking[map];
-        }
-      }
+      testing::ForEachReceiver(*surfaces,
+                               readback.shadow_bits,
+                               uint32_t{1} << light.shadow_bit,
+                               [&](const Eigen::Vector3d& world) {
+                                 const int map = look_up->At(world).map;
+                                 ++num_shadowed;
+                                 num_lost += map < 0 ? 1 : 0;
+                                 ++num_asking[map];
+                               });
       EXPECT_GT(num_shadowed, 1000);
       EXPECT_EQ(num_lost, 0);
       EXPECT_GE(num_asking.size(), 3u);

@@ -12,19 +12,20 @@
 #include "base/stop.h"
 #include "optimizer/figures/foretell.h"
 #include "optimizer/fit.h"
-#include "optimizer/readback/needed_surfaces.h"
 #include "partition/evaluate_plan.h"
-#include "tests/partition/tracking/plan_walk.h"
+#include "tests/partition/receivers.h"
 #include "tests/testing/matchers.h"
 #include "tests/testing/test_scene.h"
 
 namespace lightfit {
 namespace {
 
+using testing::CountUnserved;
 using ::testing::HasSubstr;
 using testing::IsOk;
 using testing::StatusIs;
 using testing::TestScene;
+using testing::Unserved;
 
 constexpr int64_t kTexels = int64_t{200} * 200;
 
@@ -46,28 +47,6 @@ struct Case {
         readback(with_facing ? scene.readback.ViewWithFacing() : scene.readback.View()),
         surfaces(*FindSurfaces(readback, 0x7, {})) {}
 };
-
-// Pixels that the border answers wrongly and that no map holds.
-int NumOutside(const Case& at, const Light& light, const LightPlan& plan) {
-  const Plan look_up_plan = PlanOf(plan);
-  const auto look_up = PlanLookUp::Create(look_up_plan, light);
-  EXPECT_THAT(look_up, IsOk());
-  const NeededSurfaces needed(at.surfaces, light, plan.border);
-  const uint32_t bit = uint32_t{1} << light.shadow_bit;
-  int num_outside = 0;
-  for (int y = 0; y < at.readback.height(); ++y) {
-    for (int x = 0; x < at.readback.width(); ++x) {
-      const size_t pixel = at.readback.Index(x, y);
-      if ((needed.words()[pixel] & bit) == 0) continue;
-      if (!at.surfaces.affine_depth.IsSurface(at.readback.depth[pixel])) continue;
-      const double d = at.surfaces.affine_depth.At(x, y, at.readback.depth[pixel]);
-      const Eigen::Vector4d world =
-          at.surfaces.world_from_screen * Eigen::Vector4d(x + 0.5, y + 0.5, d, 1.0);
-      num_outside += look_up->At(world.hnormalized()).map < 0 ? 1 : 0;
-    }
-  }
-  return num_outside;
-}
 
 TEST(FitPlan, KeepsTheBudgetAndHoldsAllThatTheBorderWouldAnswerWrongly) {
   int num_plans = 0, num_several = 0;
@@ -94,7 +73,9 @@ TEST(FitPlan, KeepsTheBudgetAndHoldsAllThatTheBorderWouldAnswerWrongly) {
           }
           EXPECT_NEAR(plan->energy, energy, 1e-9 * energy);
           if (plan->maps.size() > 1) {
-            EXPECT_EQ(NumOutside(at, light, *plan), 0) << light.name << " seed " << seed;
+            const Unserved unserved = CountUnserved(at.surfaces, light, PlanOf(*plan));
+            EXPECT_EQ(unserved.outside, 0) << light.name << " seed " << seed;
+            EXPECT_GT(unserved.num_needed, 0);
           }
         }
       }
@@ -105,8 +86,7 @@ TEST(FitPlan, KeepsTheBudgetAndHoldsAllThatTheBorderWouldAnswerWrongly) {
 }
 
 TEST(FitPlan, DepthGrowsFromZeroToOneOverTheReceiversOfEachMap) {
-  constexpr double kRounding = 1e-6;
-  int num_receivers = 0;
+  int num_needed = 0;
   for (uint64_t seed = 1; seed <= 3; ++seed) {
     const Case at(seed);
     for (const Light& light : at.scene.lights) {
@@ -114,32 +94,14 @@ TEST(FitPlan, DepthGrowsFromZeroToOneOverTheReceiversOfEachMap) {
       options.choose_by_forecast = false;
       const auto plan = FitPlan(at.surfaces, light, options);
       ASSERT_THAT(plan, IsOk());
-      const Plan maps = PlanOf(*plan);
-      const auto look_up = PlanLookUp::Create(maps, light);
-      ASSERT_THAT(look_up, IsOk());
-      const NeededSurfaces needed(at.surfaces, light, plan->border);
-      for (int y = 0; y < at.readback.height(); ++y) {
-        for (int x = 0; x < at.readback.width(); ++x) {
-          const size_t pixel = at.readback.Index(x, y);
-          if (!at.surfaces.affine_depth.IsSurface(at.readback.depth[pixel])) continue;
-          const double d = at.surfaces.affine_depth.At(x, y, at.readback.depth[pixel]);
-          const Eigen::Vector3d world =
-              (at.surfaces.world_from_screen * Eigen::Vector4d(x + 0.5, y + 0.5, d, 1.0))
-                  .hnormalized();
-          const PlanPlace place = look_up->At(world);
-          if (place.map < 0) continue;
-          ++num_receivers;
-          const Eigen::Vector4d at_map = maps.maps[place.map].map_from_world * world.homogeneous();
-          // What is nearer than all that is covered is lit, and may be in front.
-          EXPECT_LE(at_map.z() / at_map.w(), 1.0 + kRounding) << light.name << " seed " << seed;
-          const bool is_covered = (needed.words()[pixel] & (uint32_t{1} << light.shadow_bit)) != 0;
-          if (!is_covered) continue;
-          EXPECT_GE(at_map.z() / at_map.w(), -kRounding) << light.name;
-        }
-      }
+      const Unserved unserved = CountUnserved(at.surfaces, light, PlanOf(*plan));
+      // What is nearer than all that is needed is lit, and may be in front.
+      EXPECT_EQ(unserved.in_front, 0) << light.name << " seed " << seed;
+      EXPECT_EQ(unserved.beyond, 0) << light.name << " seed " << seed;
+      num_needed += unserved.num_needed;
     }
   }
-  EXPECT_GT(num_receivers, 5000);
+  EXPECT_GT(num_needed, 5000);
 }
 
 TEST(FitPlan, OfOneMapIsTheFitOfTheLight) {
@@ -216,25 +178,10 @@ TEST(FitPlan, AGuardKeepsWhatIsServedAwayFromTheSides) {
   options.choose_by_forecast = false;
   const auto plan = FitPlan(at.surfaces, light, options);
   ASSERT_THAT(plan, IsOk());
-  const Plan maps = PlanOf(*plan);
-  constexpr double kRounding = 1e-6;
-  const auto guarded = PlanLookUp::Create(maps, light, options.guard_texels - kRounding);
-  ASSERT_THAT(guarded, IsOk());
-  const NeededSurfaces needed(at.surfaces, light, plan->border);
-  int num_covered = 0;
-  for (int y = 0; y < at.readback.height(); ++y) {
-    for (int x = 0; x < at.readback.width(); ++x) {
-      const size_t pixel = at.readback.Index(x, y);
-      if ((needed.words()[pixel] & 1u) == 0) continue;
-      if (!at.surfaces.affine_depth.IsSurface(at.readback.depth[pixel])) continue;
-      const double d = at.surfaces.affine_depth.At(x, y, at.readback.depth[pixel]);
-      const Eigen::Vector4d world =
-          at.surfaces.world_from_screen * Eigen::Vector4d(x + 0.5, y + 0.5, d, 1.0);
-      EXPECT_GE(guarded->At(world.hnormalized()).map, 0);
-      ++num_covered;
-    }
-  }
-  EXPECT_GT(num_covered, 100);
+  const Unserved unserved =
+      CountUnserved(at.surfaces, light, PlanOf(*plan), Cover::kShadowed, options.guard_texels);
+  EXPECT_EQ(unserved.outside, 0);
+  EXPECT_GT(unserved.num_needed, 100);
 }
 
 // What the plan says of its maps is of those who ask them, who keep to the guard; and so are
@@ -258,19 +205,10 @@ TEST(FitPlan, FiguresAndDepthsAreOfTheGuardedLookUp) {
     ASSERT_THAT(figures, IsOk());
     EXPECT_NEAR(plan->energy, figures->energy, 1e-9 * figures->energy);  // rounding
     unlike = std::abs(EvaluatePlan(*view, maps, fit, 0.0)->energy / figures->energy - 1.0);
-
-    const auto look_up = PlanLookUp::Create(maps, light, guard);
-    ASSERT_THAT(look_up, IsOk());
-    const NeededSurfaces needed(at.surfaces, light, plan->border);
-    testing::ForEachReceiver(
-        at.surfaces, needed.words(), 1u << light.shadow_bit, [&](const Eigen::Vector3d& world) {
-          const int k = look_up->At(world).map;
-          if (k < 0) return;
-          const Eigen::Vector4d place = maps.maps[k].map_from_world * world.homogeneous();
-          constexpr double kRounding = 1e-7;
-          EXPECT_GE(place.z(), -kRounding * place.w());
-          EXPECT_LE(place.z(), (1.0 + kRounding) * place.w());
-        });
+    const Unserved unserved = CountUnserved(at.surfaces, light, maps, Cover::kShadowed, guard);
+    EXPECT_EQ(unserved.in_front, 0);
+    EXPECT_EQ(unserved.beyond, 0);
+    EXPECT_GT(unserved.num_needed, 100);
   }
   EXPECT_GT(unlike, 1e-6);  // the guard makes a difference
 }
@@ -299,22 +237,9 @@ TEST(FitPlan, ServesALampAmongItsReceivers) {
     ASSERT_THAT(plan, IsOk()) << "seed " << seed;
     EXPECT_GE(plan->maps.size(), 2u);
     EXPECT_LE(NumTexels(PlanOf(*plan)), kTexels);
-    const Plan maps = PlanOf(*plan);
-    const auto look_up = PlanLookUp::Create(maps, light);
-    ASSERT_THAT(look_up, IsOk());
-    int num_outside = 0, num_receivers = 0;
-    for (int y = 0; y < readback.height(); ++y) {
-      for (int x = 0; x < readback.width(); ++x) {
-        const size_t pixel = readback.Index(x, y);
-        if (!surfaces->affine_depth.IsSurface(readback.depth[pixel])) continue;
-        const double d = surfaces->affine_depth.At(x, y, readback.depth[pixel]);
-        const Eigen::Vector4d world =
-            surfaces->world_from_screen * Eigen::Vector4d(x + 0.5, y + 0.5, d, 1.0);
-        num_outside += look_up->At(world.hnormalized()).map < 0 ? 1 : 0;
-        ++num_receivers;
-      }
-    }
-    EXPECT_EQ(num_outside, 0) << "seed " << seed << " of " << num_receivers;
+    const Unserved unserved = CountUnserved(*surfaces, light, PlanOf(*plan), Cover::kReceivers);
+    EXPECT_EQ(unserved.all(), 0) << "seed " << seed << " of " << unserved.num_needed;
+    EXPECT_GT(unserved.num_needed, 1000);
     ++num_surrounded;
   }
   std::printf("%d lamps among their receivers\n", num_surrounded);

@@ -6,22 +6,23 @@
 #include <Eigen/Dense>
 #include <cstdio>
 
-#include "optimizer/readback/needed_surfaces.h"
 #include "partition/evaluate_plan.h"
 #include "tests/partition/plan_case.h"
+#include "tests/partition/receivers.h"
 #include "tests/partition/tracking/plan_walk.h"
 #include "tests/testing/matchers.h"
 
 namespace lightfit {
 namespace {
 
-using testing::ForEachReceiver;
+using testing::CountUnserved;
 using testing::HasShadows;
 using ::testing::HasSubstr;
 using testing::IsOk;
 using testing::PlanCase;
 using testing::PlanWalk;
 using testing::StatusIs;
+using testing::Unserved;
 
 constexpr int kAllSamples = 1 << 20;
 constexpr int kNumFrames = 4;
@@ -109,7 +110,6 @@ TEST(RaySum, HasTheEnergyOfAllFrames) {
 }
 
 TEST(RaySum, PlanHoldsWhatMustBeHeldInEveryFrame) {
-  constexpr double kDepthTolerance = 1e-7;  // rounding
   int num_needed = 0;
   for (uint64_t seed = 1; seed <= 3; ++seed) {
     const PlanWalk walk(seed, kNumFrames, kStep);
@@ -118,35 +118,11 @@ TEST(RaySum, PlanHoldsWhatMustBeHeldInEveryFrame) {
         const PlanOptions options = OptionsOf(4);
         const auto plan = FitRaySum(SumOfWalk(walk, light, options.fit, most_samples), options);
         if (!plan.ok()) continue;
-        const Plan looked_up = PlanOf(*plan);
-        const auto look_up = PlanLookUp::Create(looked_up, light);
-        ASSERT_THAT(look_up, IsOk());
-        int num_outside = 0, num_out_of_depth = 0;
         for (const Surfaces& surfaces : walk.frames) {
-          const NeededSurfaces needed(surfaces, light, Border::kLit);
-          ForEachReceiver(
-              surfaces,
-              needed.words(),
-              uint32_t{1} << light.shadow_bit,
-              [&](const Eigen::Vector3d& world) {
-                ++num_needed;
-                const int k = look_up->At(world).map;
-                num_outside += k < 0 ? 1 : 0;
-                if (k < 0) return;
-                const Eigen::Vector4d at = looked_up.maps[k].map_from_world * world.homogeneous();
-                const double z = at.z() / at.w();
-                num_out_of_depth += z < -kDepthTolerance || z > 1.0 + kDepthTolerance ? 1 : 0;
-              });
-          // Lit ones are not clipped either.
-          ForEachReceiver(surfaces, {}, 0, [&](const Eigen::Vector3d& world) {
-            const int k = look_up->At(world).map;
-            if (k < 0) return;
-            const Eigen::Vector4d at = looked_up.maps[k].map_from_world * world.homogeneous();
-            num_out_of_depth += at.z() / at.w() > 1.0 + kDepthTolerance ? 1 : 0;
-          });
+          const Unserved unserved = CountUnserved(surfaces, light, PlanOf(*plan));
+          EXPECT_EQ(unserved.all(), 0) << "seed " << seed << ", " << light.name;
+          num_needed += unserved.num_needed;
         }
-        EXPECT_EQ(num_outside, 0) << "seed " << seed << ", " << light.name;
-        EXPECT_EQ(num_out_of_depth, 0) << "seed " << seed << ", " << light.name;
       }
     }
   }

@@ -12,6 +12,7 @@
 #include <tuple>
 #include <vector>
 
+#include "optimizer/figures/footprint_image.h"
 #include "tests/partition/random_plan.h"
 #include "tests/shaders/gl_atlas.h"
 #include "tests/shaders/plan_shader.h"
@@ -233,20 +234,11 @@ TEST_F(PlanAtlas, WhatTheExampleDrawsIsFound) {
     TestScene scene(seed, 3, 72, 48);
     if (seed == 2) DarkenButOneWindow(scene.readback);
     const Readback readback = scene.readback.ViewWithFacing();
-    const AffineDepth affine_depth(readback.camera, readback.depth_kind);
-    const Eigen::Matrix4d world_from_screen = readback.camera.WorldFromScreen();
-    std::vector<Eigen::Vector3d> receivers;
-    for (int y = 0; y < readback.height(); ++y) {
-      for (int x = 0; x < readback.width(); ++x) {
-        const double depth = readback.depth[readback.Index(x, y)];
-        if (!affine_depth.IsSurface(depth)) continue;
-        const Eigen::Vector4d screen(x + 0.5, y + 0.5, affine_depth.At(x, y, depth), 1.0);
-        receivers.push_back((world_from_screen * screen).hnormalized());
-      }
-    }
+    const absl::StatusOr<std::vector<Eigen::Vector3d>> receivers = ReceiverPositions(readback);
+    ASSERT_THAT(receivers, IsOk());
     for (const Light& light : scene.lights) {
       std::vector<ShaderPoint> points, casters;
-      for (const Eigen::Vector3d& receiver : receivers) {
+      for (const Eigen::Vector3d& receiver : *receivers) {
         points.push_back(receiver.cast<float>().homogeneous());
         if (points.size() % 2 == 0) {
           casters.push_back(Towards(light, receiver).cast<float>().homogeneous());

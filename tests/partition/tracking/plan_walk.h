@@ -41,25 +41,4 @@ struct PlanWalk {
   PlanWalk(const PlanWalk&) = delete;
 };
 
-// Calls visit(world point) for every receiver; `needed`: for those alone whose bit is set in these
-// words.
-template <typename Visitor>
-void ForEachReceiver(const Surfaces& surfaces,
-                     const absl::Span<const uint32_t>& words,
-                     uint32_t bit,
-                     const Visitor& visit) {
-  const Readback& readback = surfaces.readback;
-  for (int y = 0; y < readback.height(); ++y) {
-    for (int x = 0; x < readback.width(); ++x) {
-      const size_t pixel = readback.Index(x, y);
-      if (!words.empty() && (words[pixel] & bit) == 0) continue;
-      if (!surfaces.affine_depth.IsSurface(readback.depth[pixel])) continue;
-      const double d = surfaces.affine_depth.At(x, y, readback.depth[pixel]);
-      const Eigen::Vector4d world =
-          surfaces.world_from_screen * Eigen::Vector4d(x + 0.5, y + 0.5, d, 1.0);
-      visit(Eigen::Vector3d(world.hnormalized()));
-    }
-  }
-}
-
 }  // namespace lightfit::testing
