@@ -6,7 +6,7 @@
 #include <Eigen/Dense>
 #include <limits>
 
-#include "geometry/homography.h"
+#include "tests/partition/random_plan.h"
 #include "tests/testing/matchers.h"
 #include "tests/testing/random_cases.h"
 #include "wire/matrix_proto.h"
@@ -19,34 +19,25 @@ namespace {
 using ::testing::HasSubstr;
 using testing::IsOk;
 using testing::Random;
+using testing::RandomPlanLight;
+using testing::RandomPlanMap;
 using testing::StatusIs;
 
-Light RandomLight(Random& random) {
-  if (random.Coin()) return Light::Directional("light", random.UnitVector());
-  return Light::Point("light", random.InCube(3.0));
-}
-
-// A map of the light around a random axis, at any scale of its homogeneous rows.
+// What a fit says of a map that nobody fitted.
 LightMatrix RandomMap(const Light& light, Border border, Random& random) {
+  const PlanMap placed = RandomPlanMap(light, random);
   LightMatrix map;
   map.light_name = light.name;
   map.border = border;
-  map.map = {random.Int(40, 400), random.Int(40, 400)};
-  Eigen::Matrix3d map_from_ray =
-      light.kind == Light::Kind::kPoint ? random.Rotation() : Eigen::Matrix3d::Identity();
-  map_from_ray.topRows<2>() *= random.LogUniform(20.0, 200.0);
-  map_from_ray.row(0) += 0.5 * map.map.width * map_from_ray.row(2);
-  map_from_ray.row(1) += 0.5 * map.map.height * map_from_ray.row(2);
-  map_from_ray *= random.LogUniform(0.01, 100.0);
-  map.map_from_world =
-      MapFromWorld(map_from_ray, RayFromWorld(light), light, DepthRange{1.0, 10.0}, 0.1);
+  map.map = placed.size;
+  map.map_from_world = placed.map_from_world;
   map.figures.energy = random.LogUniform(1e-3, 1e3);
   map.figures.footprint = {random.Uniform(0.0, 9.0), 0.2, 0.3, random.Uniform(0.0, 9.0)};
   map.figures.samples.used = random.Int(0, 5000);
   return map;
 }
 
-LightPlan RandomPlan(const Light& light, Random& random) {
+LightPlan RandomLightPlan(const Light& light, Random& random) {
   LightPlan plan;
   plan.light_name = light.name;
   plan.border = random.Coin() ? Border::kLit : Border::kDark;
@@ -85,8 +76,8 @@ int AskedByTheMessage(const v1::Plan& plan, const Eigen::Vector3d& world) {
 TEST(PlanProto, ReadsBackExactlyThroughJson) {
   Random random(11);
   for (int i = 0; i < 50; ++i) {
-    const Light light = RandomLight(random);
-    const LightPlan plan = RandomPlan(light, random);
+    const Light light = RandomPlanLight(random);
+    const LightPlan plan = RandomLightPlan(light, random);
     const double guard = random.Uniform(0.0, 3.0);
     const absl::StatusOr<v1::Plan> written =
         PlanToProto(plan, light, ClipConvention::Direct3D(), guard, /*with_quantiles=*/true);
@@ -117,8 +108,8 @@ TEST(PlanProto, HasWhatALookUpNeeds) {
   Random random(12);
   int num_asked = 0, num_contested = 0;
   for (int i = 0; i < 50; ++i) {
-    const Light light = RandomLight(random);
-    const LightPlan plan = RandomPlan(light, random);
+    const Light light = RandomPlanLight(random);
+    const LightPlan plan = RandomLightPlan(light, random);
     const double guard = random.Coin() ? 0.0 : random.Uniform(0.0, 10.0);
     const absl::StatusOr<v1::Plan> message =
         PlanToProto(plan, light, ClipConvention::Vulkan(), guard, /*with_quantiles=*/false);
@@ -145,8 +136,8 @@ TEST(PlanProto, HasWhatALookUpNeeds) {
 
 TEST(PlanProto, ClipFromWorldIsOfEachMapsOwnSize) {
   Random random(13);
-  const Light light = RandomLight(random);
-  const LightPlan plan = RandomPlan(light, random);
+  const Light light = RandomPlanLight(random);
+  const LightPlan plan = RandomLightPlan(light, random);
   const ClipConvention clip = ClipConvention::ReversedZ();
   const absl::StatusOr<v1::Plan> message = PlanToProto(plan, light, clip, 0.0, true);
   ASSERT_THAT(message, IsOk());
@@ -159,8 +150,8 @@ TEST(PlanProto, ClipFromWorldIsOfEachMapsOwnSize) {
 
 TEST(PlanProto, SaysWhichFieldIsWrong) {
   Random random(14);
-  const Light light = RandomLight(random);
-  LightPlan plan = RandomPlan(light, random);
+  const Light light = RandomPlanLight(random);
+  LightPlan plan = RandomLightPlan(light, random);
   plan.maps.push_back(RandomMap(light, plan.border, random));
   const v1::Plan good = *PlanToProto(plan, light, ClipConvention::Vulkan(), 0.0, true);
   const auto refused = [&](const auto& damage, const std::string& words) {
@@ -237,7 +228,7 @@ TEST(PlanOptionsProto, HasTheSizesThatMapsMayHave) {
 // A light with several maps has no single matrix, and one with one map has both.
 TEST(PlanInResult, OfOneMapIsTheMatrixOfTheLightToo) {
   Random random(15);
-  const Light light = RandomLight(random);
+  const Light light = RandomPlanLight(random);
   for (const size_t num_maps : {size_t{1}, size_t{3}}) {
     FitReport report;
     report.plan_options.emplace();
