@@ -59,12 +59,14 @@ absl::StatusOr<LightPlan> FourMaps(const Seen& seen, const Light& light) {
 }
 
 TEST(EvaluatePlan, OfOneMapThatHoldsEverythingIsThatOfTheMatrix) {
+  int num_cases = 0;
   for (uint64_t seed = 1; seed <= 4; ++seed) {
     SCOPED_TRACE(seed);
     const Seen seen(seed);
     const Light& sun = seen.scene.lights[0];
     const LightView view = seen.View(sun, Border::kLit);
     if (view.samples.size() == 0) continue;
+    ++num_cases;
     FitOptions all = Automatic();
     all.cover = Cover::kReceivers;
     const absl::StatusOr<LightMatrix> matrix =
@@ -86,31 +88,37 @@ TEST(EvaluatePlan, OfOneMapThatHoldsEverythingIsThatOfTheMatrix) {
     ExpectNear(figures->footprint.p99, expected->footprint.p99);
     ExpectNear(figures->footprint.worst, expected->footprint.worst);
   }
+  EXPECT_GE(num_cases, 3);
 }
 
 TEST(EvaluatePlan, HasTheEnergyThatTheFitSays) {
+  int num_cases = 0;
   for (uint64_t seed = 1; seed <= 4; ++seed) {
     SCOPED_TRACE(seed);
     const Seen seen(seed);
     for (const Light& light : seen.scene.lights) {
       const absl::StatusOr<LightPlan> plan = FourMaps(seen, light);
       if (!plan.ok() || plan->energy == 0.0) continue;
+      ++num_cases;
       const absl::StatusOr<Figures> figures =
           EvaluatePlan(seen.View(light, plan->border), PlanOf(*plan), Automatic());
       ASSERT_THAT(figures, IsOk());
       ExpectNear(figures->energy, plan->energy);
     }
   }
+  EXPECT_GE(num_cases, 9);
 }
 
 // Each sample in the map of least q that holds it, found by trying all.   math.md (18), (20), (2)
 TEST(EvaluatePlan, FootprintsAreThoseOfTheMapsAsked) {
+  int num_cases = 0;
   for (const double guard : {0.0, 3.0}) {
     const Seen seen(2);
     for (const Light& light : seen.scene.lights) {
       SCOPED_TRACE(light.name);
       const absl::StatusOr<LightPlan> fitted = FourMaps(seen, light);
       if (!fitted.ok() || fitted->energy == 0.0) continue;
+      ++num_cases;
       const LightView view = seen.View(light, fitted->border);
       double sum_squared = 0.0, sum_weight = 0.0, worst = 0.0;
       int64_t num_outside = 0;
@@ -145,6 +153,7 @@ TEST(EvaluatePlan, FootprintsAreThoseOfTheMapsAsked) {
       ExpectNear(figures->footprint.worst, worst);
     }
   }
+  EXPECT_GE(num_cases, 4);
 }
 
 TEST(EvaluatePlan, MeasuringIsTheSameWithoutTheForecast) {

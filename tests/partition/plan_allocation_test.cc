@@ -1,7 +1,6 @@
 // A frame loop's plans take nothing from the heap once their pool has seen the work.
 #include <gtest/gtest.h>
 
-#include <cstdio>
 #include <utility>
 
 #include "base/scratch.h"
@@ -22,26 +21,23 @@ using testing::TestScene;
 
 TEST(FitPlan, AllocatesNothingFromAWarmPool) {
   constexpr int kNumRounds = 4;
-  for (const uint64_t seed : {1}) {
-    std::printf("[   seed   ] %d\n", static_cast<int>(seed));
-    const TestScene scene(seed, 3, 96, 64);
-    const Readback readback = scene.readback.ViewWithFacing();
-    PlanOptions options;
-    options.max_maps = 4;
-    for (const bool choose : {false, true}) {
-      options.choose_by_forecast = choose;
-      ScratchPool pool;
-      for (int round = 0; round < kNumRounds; ++round) {
-        const ScratchScope scope(&pool);
-        const int64_t before = NumAllocations();
-        const auto surfaces = FindSurfaces(readback, 0x7, options.fit.samples);
-        for (const Light& light : scene.lights) {
-          const auto plan = FitPlan(*surfaces, light, options);
-          ASSERT_TRUE(plan.ok());  // a matcher would allocate
-        }
-        if (round > 1) {
-          EXPECT_EQ(NumAllocations() - before, 0) << "seed " << seed << ", round " << round;
-        }
+  const TestScene scene(/*seed=*/1, 3, 96, 64);
+  const Readback readback = scene.readback.ViewWithFacing();
+  PlanOptions options;
+  options.max_maps = 4;
+  for (const bool choose : {false, true}) {
+    options.choose_by_forecast = choose;
+    ScratchPool pool;
+    for (int round = 0; round < kNumRounds; ++round) {
+      const ScratchScope scope(&pool);
+      const int64_t before = NumAllocations();
+      const auto surfaces = FindSurfaces(readback, 0x7, options.fit.samples);
+      for (const Light& light : scene.lights) {
+        const auto plan = FitPlan(*surfaces, light, options);
+        ASSERT_TRUE(plan.ok());  // a matcher would allocate
+      }
+      if (round > 1) {
+        EXPECT_EQ(NumAllocations() - before, 0) << "round " << round;
       }
     }
   }
@@ -86,14 +82,16 @@ TEST(AsyncPlanner, AllocatesNothingAfterTheFirstFramesWhileMapsAreKept) {
   options.plan.texels = 40'000;
   options.plan.choose_by_forecast = false;
   AsyncPlanner planner = std::move(AsyncPlanner::Start(options).value());
-  int64_t frame = 0, num_failed = 0;
+  constexpr int kNumFrames = 24;
+  int64_t frame = 0, num_failed = 0, num_polled = 0;
   const auto run = [&] {
-    for (int i = 0; i < 24; ++i, ++frame) {
+    for (int i = 0; i < kNumFrames; ++i, ++frame) {
       testing::Fill(walk.views[0], walk.lights, frame, &planner.Lend());
       planner.Submit();
       testing::WaitUntilIdle(planner);
       const FramePlans* plans = planner.Poll();
       if (plans == nullptr) continue;
+      ++num_polled;
       for (const Light& light : walk.lights) {
         num_failed += plans->Find(light.name)->status.ok() ? 0 : 1;
       }
@@ -104,6 +102,7 @@ TEST(AsyncPlanner, AllocatesNothingAfterTheFirstFramesWhileMapsAreKept) {
   run();
   EXPECT_EQ(NumAllocations() - before, 0);
   EXPECT_EQ(num_failed, 0);
+  EXPECT_EQ(num_polled, 2 * kNumFrames);  // each is waited for
 }
 
 }  // namespace

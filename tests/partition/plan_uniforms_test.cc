@@ -137,15 +137,28 @@ TEST(PlanUniforms, AnOriginNearTheReceiversKeepsTheirDigits) {
 // up keeps (n - 1) / 2 of a texel from its sides.
 TEST(PlanUniforms, GuardOfAFilterIsHalfOfItsTexelsButOne) {
   constexpr int kWidth = 16;
+  constexpr double kTexelsAcrossV = 100.0;
+  // A sun that shines along -z on a map whose texels are squares of x and y.
+  const Light light = Light::Directional("sun", {0.0, 0.0, -1.0});
+  Plan plan;
+  PlanMap& map = plan.maps.emplace_back();
+  map.size = {kWidth, static_cast<int>(kTexelsAcrossV)};
   for (int n = 1; n <= 6; ++n) {
     const double guard = 0.5 * (n - 1);
+    const auto look_up = PlanLookUp::Create(plan, light, guard);
+    ASSERT_THAT(look_up, IsOk());
+    int num_inside = 0, num_outside = 0;
     for (int i = 0; i < 1000; ++i) {
       const double u = (i + 0.37) / 1000.0 * kWidth;
       // The first of the n texels whose middle is nearest to u.
       const int first = static_cast<int>(std::floor(u - guard));
       const bool is_inside = first >= 0 && first + n <= kWidth;
-      EXPECT_EQ(is_inside, u >= guard && u < kWidth - guard) << n << " texels at " << u;
+      EXPECT_EQ(look_up->At({u, 0.5 * kTexelsAcrossV, 0.0}).map, is_inside ? 0 : -1)
+          << n << " texels at " << u;
+      ++(is_inside ? num_inside : num_outside);
     }
+    EXPECT_GT(num_inside, 500) << n;
+    EXPECT_EQ(num_outside > 0, n > 1) << n;
   }
 }
 

@@ -287,7 +287,7 @@ TEST_F(PlanShader, AsksTheMapThatTheLookUpAsksOfFittedPlans) {
       Compare(atlas.plan, light, testing::kExampleGuardTexels, atlas.uniforms, points);
     }
   }
-  std::printf("%d maps\n", num_maps);
+  EXPECT_GT(num_maps, 12);  // of 6 lights: several each
   ExpectNoneUnexplained();
 }
 

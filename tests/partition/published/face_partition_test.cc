@@ -21,12 +21,10 @@ using ::testing::HasSubstr;
 using testing::InputOf;
 using testing::IsOk;
 using testing::kBehind;
+using testing::kFourDigits;
 using testing::kOverhead;
 using testing::Random;
 using testing::StatusIs;
-
-// The budget's whole texels, and the millionth of a map around what it serves.
-constexpr double kFourDigits = 1e-4;
 
 double StorageOf(const MethodInput& input, const FacePartitionOptions& options) {
   const absl::StatusOr<Plan> plan = FacePartition(input, options);

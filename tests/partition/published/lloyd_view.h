@@ -17,6 +17,10 @@ namespace lightfit::testing {
 inline const Eigen::Vector3d kOverhead(0.0, -1.0, 0.0);
 inline const Eigen::Vector3d kBehind(0.0, 0.0, -1.0);
 
+// To which storage is as Lloyd has it: the budget's whole texels, and the millionth of a map around
+// what it serves.
+inline constexpr double kFourDigits = 1e-4;
+
 // A level, square view along -z from the origin, its whole frustum inside the receivers, and a sun.
 // The budget is large, so that whole numbers of texels do not show.
 inline MethodInput InputOf(const LloydView& view, const Eigen::Vector3d& sun) {

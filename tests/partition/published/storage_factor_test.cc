@@ -80,12 +80,14 @@ TEST(MaxBeamErrors, AgreeWithDifferences) {
 // Lloyd 2006, 4.4: no point within a body has larger errors than some of its corners.
 TEST(MaxBeamErrors, AreLargestAtCorners) {
   Random random(2);
+  int num_maps = 0;
   for (int i = 0; i < 200; ++i) {
     MethodInput input = testing::RandomInput(random);
     input.light = Light::Directional("sun", random.UnitVector());
     const std::vector<Eigen::Vector3d> body = ViewBody(input.camera, input.receivers);
     const absl::StatusOr<MethodMap> map = SetUpMap(Method::kLispsm, input);
     if (!map.ok() || body.empty()) continue;
+    ++num_maps;
     const auto at_corners = MaxBeamErrors(map->map_from_world, input.light, input.camera, body);
     ASSERT_THAT(at_corners, IsOk());
     for (int k = 0; k < 20; ++k) {
@@ -96,6 +98,7 @@ TEST(MaxBeamErrors, AreLargestAtCorners) {
       EXPECT_LE(errors->v, at_corners->v * (1.0 + 1e-9));
     }
   }
+  EXPECT_GT(num_maps, 80);
 }
 
 // (9), (10), (12) for a single map of any warp, and the unwarped one for a light behind.

@@ -20,12 +20,10 @@ using ::testing::HasSubstr;
 using testing::InputOf;
 using testing::IsOk;
 using testing::kBehind;
+using testing::kFourDigits;
 using testing::kOverhead;
 using testing::Random;
 using testing::StatusIs;
-
-// The budget's whole texels, and the millionth of a map around what it serves.
-constexpr double kFourDigits = 1e-4;
 
 TEST(DepthSplits, AreAtEqualRatiosOrDistances) {
   Random random(1);
@@ -51,8 +49,24 @@ TEST(DepthSplits, AreAtEqualRatiosOrDistances) {
 }
 
 // (15), (16): of parts of ratio r the storage is in proportion to r - 1 with a warp and to r (r -
-// 1) without; no other splits have a smaller largest or sum of either.
+// 1) without.
+struct Needs {
+  double largest = 0.0, sum = 0.0;
+};
+Needs NeedsOf(const std::vector<double>& splits, bool warped) {
+  Needs needs;
+  for (size_t k = 1; k < splits.size(); ++k) {
+    const double ratio = splits[k] / splits[k - 1];
+    const double of_part = (warped ? 1.0 : ratio) * (ratio - 1.0);
+    needs.largest = std::max(needs.largest, of_part);
+    needs.sum += of_part;
+  }
+  return needs;
+}
+
+// No other splits have a smaller largest or sum of either.
 TEST(DepthSplits, AtEqualRatiosNeedTheFewestTexels) {
+  constexpr double kRounding = 1e-12;
   Random random(2);
   for (int i = 0; i < 2000; ++i) {
     const double alpha = random.LogUniform(2.0, 1e4);
@@ -60,17 +74,11 @@ TEST(DepthSplits, AtEqualRatiosNeedTheFewestTexels) {
     std::vector<double> splits = {1.0, alpha};
     for (int k = 1; k < num_parts; ++k) splits.push_back(random.LogUniform(1.0, alpha));
     std::sort(splits.begin(), splits.end());
-    const double equal = std::pow(alpha, 1.0 / num_parts);
+    const std::vector<double> equal = DepthSplits(1.0, alpha, num_parts, 1.0);
     for (const bool warped : {false, true}) {
-      const auto storage = [&](double ratio) { return (warped ? 1.0 : ratio) * (ratio - 1.0); };
-      double largest = 0.0, sum = 0.0;
-      for (int k = 0; k < num_parts; ++k) {
-        const double of_part = storage(splits[k + 1] / splits[k]);
-        largest = std::max(largest, of_part);
-        sum += of_part;
-      }
-      EXPECT_GE(largest, storage(equal) * (1.0 - 1e-12));
-      EXPECT_GE(sum, num_parts * storage(equal) * (1.0 - 1e-12));
+      const Needs others = NeedsOf(splits, warped), ours = NeedsOf(equal, warped);
+      EXPECT_GE(others.largest, ours.largest * (1.0 - kRounding));
+      EXPECT_GE(others.sum, ours.sum * (1.0 - kRounding));
     }
   }
 }

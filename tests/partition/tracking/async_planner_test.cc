@@ -131,13 +131,24 @@ TEST(AsyncPlanner, SaysWhatIsWrong) {
   EXPECT_THAT(RunFrame(planner, walk.views[0], walk.lights, 3).lights[0].status, IsOk());
 }
 
-TEST(AsyncPlanner, EndsWithoutWaitingForTheFrameInWork) {
-  const BoxWalk walk(/*seed=*/7, kMaxLights, /*num_views=*/1, 64, 48);
+// What comes of a planner that took another's place is of its own frames and options alone.
+TEST(AsyncPlanner, MayBeReplacedWithAFrameInWork) {
+  const BoxWalk walk(/*seed=*/7, /*num_lights=*/3, /*num_views=*/2, 64, 48);
   AsyncPlanner planner = StartPlanner(OptionsOf(32, 0.5));
   Fill(walk.views[0], walk.lights, 1, &planner.Lend());
   planner.Submit();
   planner = StartPlanner(OptionsOf(2, 0.5));
   EXPECT_EQ(planner.counts().submitted, 0);
+  EXPECT_EQ(planner.Poll(), nullptr);
+  const FramePlans& plans = RunFrame(planner, walk.views[1], walk.lights, 2);
+  const auto surfaces = FindSurfaces(walk.views[1].View(), LightMask(walk.lights), {});
+  ASSERT_THAT(surfaces, IsOk());
+  ASSERT_EQ(plans.num_lights, 3);
+  for (size_t i = 0; i < walk.lights.size(); ++i) {
+    PlanTracker alone(walk.lights[i], OptionsOf(2, 0.5));
+    ExpectSame(plans.lights[i], alone.Update(*surfaces));
+  }
+  EXPECT_EQ(planner.counts().submitted, 1);
 }
 
 }  // namespace

@@ -139,6 +139,7 @@ TEST(MeasurePlanCrawl, FollowsEachPointInTheMapThatItAsks) {
   };
   const Plan plan = TwoMaps();
   Random random(6);
+  int num_moved_in_all = 0, num_of_other_in_all = 0;
   for (int i = 0; i < 5; ++i) {
     // Of two maps one is redrawn, or both, or their common border moves.
     Plan changed = plan;
@@ -174,10 +175,15 @@ TEST(MeasurePlanCrawl, FollowsEachPointInTheMapThatItAsks) {
     }
     const Crawl crawl = Measured(before, plan, after, changed);
     std::printf("%d points, %d moved, %d ask another map\n", num_points, num_moved, num_of_other);
+    ASSERT_GT(num_points, 500);
+    num_of_other_in_all += num_of_other;
+    num_moved_in_all += num_moved;
     EXPECT_EQ(crawl.num_points, num_points);
     EXPECT_NEAR(crawl.moved_share * num_points, num_moved, 1e-6);
     EXPECT_NEAR(crawl.phase_drift_texels, std::sqrt(sum / num_points), kRounding);
   }
+  EXPECT_GT(num_moved_in_all, 1000);
+  EXPECT_GT(num_of_other_in_all, 10);
 }
 
 TEST(MeasurePlanCrawl, CountsPointsThatAskAnotherMapAsRedrawn) {
