@@ -16,6 +16,7 @@
 #include "geometry/clip.h"
 #include "io/lights_file.h"
 #include "io/readback_exr.h"
+#include "optimizer/fit.h"
 #include "optimizer/readback/surfaces.h"
 #include "partition/plan.h"
 #include "tests/cli/examples.h"

@@ -66,7 +66,8 @@ TEST(PlanSizes, AreAllowedAndNoMoreThanTheTexels) {
 // The twin: the energies of the cells' own maps cut into every choice of allowed sizes, each sample
 // by itself. What is chosen rates the L1 weights as they are at the free size.
 TEST(PlanSizes, AreNearlyTheBestOfAllChoices) {
-  constexpr double kMostWorse = 1.1;
+  // Over 24 seeds all are the best to three digits but one, which is 1.007 of it.
+  constexpr double kMostWorse = 1.01;
   const MapSizeRules rules = {.powers_of_two = true, .min_side = 64, .max_side = 512};
   const std::vector<int> sides = AllowedSides(rules);
   int num_cases = 0;

@@ -58,8 +58,9 @@ RaySum SumOfWalk(const PlanWalk& walk,
 }
 
 TEST(RaySum, OfOneReadbackHasItsPlan) {
-  // Bins are others, so cuts may be too.
-  constexpr double kMostWorse = 1.25;
+  // Bins are others, so that cuts may be too, for better or worse: by 0.76 ... 1.10 on these
+  // seeds, 0.71 ... 1.63 on 24.
+  constexpr double kMostWorse = 1.15;
   int num_cases = 0;
   for (uint64_t seed = 1; seed <= 4; ++seed) {
     for (int index = 0; index < 3; ++index) {
