@@ -15,7 +15,7 @@
 //
 // The body need not begin along b at its nearest corner. For a light within the cone of the view it
 // is a corner of the far plane, and the nearest depth in its place would warp the map much too far:
-// twelve times the texels that a light straight behind the viewer needs, instead of about two, for
+// eleven times the texels that a light straight behind the viewer needs, instead of about two, for
 // far = 1000 near. The authors' program takes the nearest corner's.
 //
 // n grows without bound as the light aligns with the view, and the map turns into the focused one
