@@ -14,7 +14,7 @@ namespace lightfit {
 namespace {
 
 // The samples that ask each map.
-ScratchVector<Samples> SamplesByMap(const LightView& view, const PlanLookUp& look_up) {
+ScratchVector<Samples> SamplesAskingEach(const LightView& view, const PlanLookUp& look_up) {
   ScratchVector<Samples> by_map(look_up.num_maps());
   for (Samples& samples : by_map) samples.ray_from_screen = view.samples.ray_from_screen;
   for (size_t i = 0; i < view.samples.size() && !IsStopped(i); ++i) {
@@ -23,15 +23,6 @@ ScratchVector<Samples> SamplesByMap(const LightView& view, const PlanLookUp& loo
     if (place.map >= 0) by_map[place.map].AppendFrom(view.samples, i);
   }
   return by_map;
-}
-
-absl::StatusOr<double> ForetellFor(const LightView& view,
-                                   const Plan& plan,
-                                   const FitOptions& options) {
-  ScratchVector<SizedMatrix> maps;
-  for (const PlanMap& map : plan.maps) maps.push_back({map.map_from_world, map.size});
-  return ForetellWrongShare(
-      view.surfaces->readback, *view.light, maps, options.samples, plan.border);
 }
 
 }  // namespace
@@ -44,7 +35,7 @@ absl::StatusOr<Figures> MeasurePlan(const LightView& view,
   if (absl::Status status = CheckServes(view, options); !status.ok()) return status;
   const absl::StatusOr<PlanLookUp> look_up = PlanLookUp::Create(plan, light, guard_texels);
   if (!look_up.ok()) return look_up.status();
-  const ScratchVector<Samples> by_map = SamplesByMap(view, *look_up);
+  const ScratchVector<Samples> by_map = SamplesAskingEach(view, *look_up);
   const Eigen::Matrix3d ray_from_normalized = view.normalized_from_ray().inverse();
   Figures figures;
   FootprintSet footprints;
@@ -84,10 +75,20 @@ absl::StatusOr<Figures> EvaluatePlan(const LightView& view,
                                      double guard_texels) {
   absl::StatusOr<Figures> figures = MeasurePlan(view, plan, options, guard_texels);
   if (!figures.ok()) return figures.status();
-  const absl::StatusOr<double> wrong_share = ForetellFor(view, plan, options);
+  const absl::StatusOr<double> wrong_share =
+      ForetellPlan(view.surfaces->readback, *view.light, plan, options.samples);
   if (!wrong_share.ok()) return wrong_share.status();
   figures->wrong_share = *wrong_share;
   return figures;
+}
+
+absl::StatusOr<double> ForetellPlan(const Readback& readback,
+                                    const Light& light,
+                                    const Plan& plan,
+                                    const SampleOptions& samples) {
+  ScratchVector<SizedMatrix> maps;
+  for (const PlanMap& map : plan.maps) maps.push_back({map.map_from_world, map.size});
+  return ForetellWrongShare(readback, light, maps, samples, plan.border);
 }
 
 }  // namespace lightfit

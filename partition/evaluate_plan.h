@@ -30,4 +30,11 @@ absl::StatusOr<Figures> EvaluatePlan(const LightView& view,
                                      const FitOptions& options = {},
                                      double guard_texels = 0.0);
 
+// ForetellWrongShare() of a plan, as if every receiver asked the densest map that holds it; half
+// spaces and guard do not count.
+absl::StatusOr<double> ForetellPlan(const Readback& readback,
+                                    const Light& light,
+                                    const Plan& plan,
+                                    const SampleOptions& samples);
+
 }  // namespace lightfit

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "optimizer/choose_fit.h"
-#include "optimizer/figures/foretell.h"
 #include "optimizer/fit.h"
+#include "partition/evaluate_plan.h"
 #include "partition/finish_plan.h"
 #include "partition/plan_cells.h"
 #include "partition/plan_sizes.h"
@@ -47,10 +47,8 @@ class Choice {
       : surfaces_(surfaces), light_(light), options_(options) {}
 
   absl::Status Offer(LightPlan plan) {
-    ScratchVector<SizedMatrix> maps;
-    for (const LightMatrix& map : plan.maps) maps.push_back({map.map_from_world, map.map});
     const absl::StatusOr<double> share =
-        ForetellWrongShare(surfaces_.readback, light_, maps, options_.fit.samples, plan.border);
+        ForetellPlan(surfaces_.readback, light_, PlanOf(plan), options_.fit.samples);
     if (!share.ok()) return share.status();
     plan.wrong_share = *share;
     double below = 1.0;
