@@ -30,8 +30,10 @@ ScratchVector<Samples> SamplesAskingEach(const LightView& view, const PlanLookUp
 absl::StatusOr<Figures> MeasurePlan(const LightView& view,
                                     const Plan& plan,
                                     const FitOptions& options,
-                                    double guard_texels) {
+                                    double guard_texels,
+                                    ScratchVector<Figures>* of_maps) {
   const Light& light = *view.light;
+  if (of_maps != nullptr) of_maps->clear();
   if (absl::Status status = CheckServes(view, options); !status.ok()) return status;
   const absl::StatusOr<PlanLookUp> look_up = PlanLookUp::Create(plan, light, guard_texels);
   if (!look_up.ok()) return look_up.status();
@@ -45,9 +47,12 @@ absl::StatusOr<Figures> MeasurePlan(const LightView& view,
         MapFromRay(plan.maps[k].map_from_world, light);
     if (!map_from_ray.ok()) return map_from_ray.status();
     const Eigen::Matrix3d map_from_normalized = *map_from_ray * ray_from_normalized;
-    figures.energy +=
-        MeasureFigures(by_map[k], map_from_normalized, options.metric, options.along_edge_share)
-            .energy;
+    Figures of_map =
+        MeasureFigures(by_map[k], map_from_normalized, options.metric, options.along_edge_share);
+    figures.energy += of_map.energy;
+    of_map.samples = view.samples.counts;
+    of_map.samples.used = static_cast<int64_t>(by_map[k].size());
+    if (of_maps != nullptr) of_maps->push_back(of_map);
     footprints.Add(map_from_normalized, by_map[k]);
     num_asked += by_map[k].size();
   }

@@ -13,11 +13,13 @@
 
 namespace lightfit {
 
-// EvaluatePlan() without the forecast, which takes a pass over the pixels.
+// EvaluatePlan() without the forecast, which takes a pass over the pixels. `of_maps`, where it is
+// not null, gets the figures of each map over the samples that ask it.
 absl::StatusOr<Figures> MeasurePlan(const LightView& view,
                                     const Plan& plan,
                                     const FitOptions& options = {},
-                                    double guard_texels = 0.0);
+                                    double guard_texels = 0.0,
+                                    ScratchVector<Figures>* of_maps = nullptr);
 
 // As EvaluateMatrix(), each sample in the map that it asks. Samples outside of all maps, which the
 // border answers, are in no figure: FootprintStatistics::num_behind says how many. Half spaces of
