@@ -1,8 +1,8 @@
 // bench/brute_force.h
 //
 // The least energy that any light matrix can have, found the slow way: the yardstick for quality.
-// In:   a summary (energy tensor and hull of the rays), the map's size, the fit's margins and
-// min_w. Out:  the energy of the best matrix found.
+// In:   a summary (energy tensor and hull of the rays), the map's size, the fit's margins, min_w.
+// Out:  the energy of the best matrix found.
 //
 // Shares with the library only the tensor and the hull. Axes are a dense grid over the polar
 // polygon; at each, the enclosing parallelogram is the best pair of strips on a dense grid of both

@@ -1,8 +1,8 @@
 // bench/fit_input.h
 //
 // What bench_fit runs on: inputs whose lights can all be fitted.
-// In:   boxes on a floor at four sizes, 32 lights each; read-backs of a renderer where there are
-// any. Out:  FitInputs, the lights in an order that makes the first a typical one.
+// In:   boxes on a floor at four sizes, 32 lights each; a renderer's read-backs, if any.
+// Out:  FitInputs, the lights in an order that makes the first a typical one.
 #pragma once
 
 #include <deque>

@@ -1,8 +1,7 @@
 // bench/service.cc : what the service adds to the library.
 //
-// In:   boxes on a floor, 180x180 pixels, 8 lights; a server in this process, reached over
-// loopback. Out:  for Fit and FitSummary at 1, 8 and 64 calls at a time, calls per second and
-// milliseconds of
+// In:   boxes on a floor, 180x180 pixels, 8 lights; a server in this process, over loopback.
+// Out:  for Fit and FitSummary at 1, 8 and 64 calls at a time, calls per second and milliseconds of
 //       a call, median and 99 %, of
 //         echo      a call of the same bytes both ways on the same server, that computes nothing
 //         library   the functions of the library alone, on as many threads as the server has

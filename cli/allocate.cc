@@ -8,6 +8,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_replace.h"
 #include "base/number.h"
 #include "base/output_file.h"
 #include "base/progress.h"
@@ -18,6 +19,7 @@
 #include "geometry/map_size.h"
 #include "jobs/allocate_lights.h"
 #include "jobs/fit_summary.h"
+#include "partition/fit_plans.h"
 
 namespace lightfit::cli {
 namespace {
@@ -44,6 +46,12 @@ absl::StatusOr<AllocationReport> Allocate(const AllocateFlags& flags, const Allo
       task.readback.has_value() ? flags.fit.readback_path : SourceText(flags.fit.summary_paths);
   report->fit.clip = flags.fit.clip;
   return report;
+}
+
+// The texels of plans are the budget here.
+absl::Status AboutBudget(const absl::Status& status) {
+  return absl::Status(status.code(),
+                      absl::StrReplaceAll(status.message(), {{"options.texels = ", "--budget "}}));
 }
 
 std::string SourceLine(const AllocateFlags& flags, const AllocateInputs& inputs) {
@@ -116,6 +124,10 @@ int RunAllocate(const AllocateFlags& flags) {
   }
   const absl::StatusOr<AllocateInputs> inputs = ReadAllocateInputs(flags);
   if (!inputs.ok()) return Fail(kExitBadInput, inputs.status());
+  if (const std::optional<PlanOptions>& plans = inputs->task.plans; plans.has_value()) {
+    status = ValidateSharedBudget(static_cast<int>(inputs->task.lights.size()), *plans);
+    if (!status.ok()) return Fail(kExitUsage, AboutBudget(status));
+  }
 
   const absl::StatusOr<AllocationReport> report = Allocate(flags, inputs->task);
   if (!report.ok()) return Fail(kExitBadInput, report.status());

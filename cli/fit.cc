@@ -79,9 +79,7 @@ LightFit LightFitOf(const FitComparison& comparison, double guard_texels) {
     fit.matrix = comparison.status();
   } else if (comparison.plan.has_value()) {
     const JudgedPlan& judged = **comparison.plan;
-    fit.plan = PlanFit{judged.plan, judged.own_figures, guard_texels};
-    fit.matrix = judged.plan.maps[0];  // the answer where it is the only one
-    fit.wrong_share = judged.own_figures.wrong_share;
+    SetPlan(judged.plan, judged.own_figures, guard_texels, &fit);
     if (comparison.final.ok()) fit.one_map = comparison.final->own_figures;
   } else {
     fit.matrix = comparison.final->matrix;

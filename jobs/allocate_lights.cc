@@ -127,9 +127,7 @@ void AddPlan(const AllocationTask& task,
     fit.matrix = judged.status();
     return;
   }
-  fit.plan = PlanFit{judged->plan, judged->own_figures, guard_texels};
-  fit.matrix = judged->plan.maps[0];  // the answer where it is the only one
-  fit.wrong_share = judged->own_figures.wrong_share;
+  SetPlan(judged->plan, judged->own_figures, guard_texels, &fit);
   PlanOptions share = *task.plans;
   share.texels = *task.budget_texels / static_cast<int64_t>(num_plans);
   // In the same border, as energies are of the edges that it serves.

@@ -38,7 +38,7 @@ struct AllocationTask {
   MapSizeRules rules;
 
   // With a budget and a read-back: several maps for each light, which the budget is divided among;
-  // PlanOptions::texels is the budget, and `rules` do not count.
+  // PlanOptions::texels is the budget, and of sizes PlanOptions::sizes counts.
   std::optional<PlanOptions> plans;
 };
 

@@ -7,7 +7,9 @@
 
 #include "jobs/plan_advice.h"
 #include "optimizer/fit.h"
+#include "optimizer/sizing/map_sizes.h"
 #include "partition/fit_plan.h"
+#include "partition/plan_sizes.h"
 
 namespace lightfit {
 
@@ -69,22 +71,31 @@ FitComparison ComparePlan(const Surfaces& surfaces,
   const absl::StatusOr<MatrixJudge> judge =
       MatrixJudge::Of(surfaces, light, plan->border, options.fit);
   if (!judge.ok()) return FailedFitComparison(light, judge.status());
+  // Made for the same filter.
   const MapSize map = OneMapSize(options);
+  FitOptions one = options.fit;
+  one.margin_texels += options.guard_texels;
   return {light,
-          (*judge)(FitLight(surfaces, light, map, FitOptions::Focused(options.fit))),
-          (*judge)(FitLight(surfaces, light, map, FitOptions::AsPublished(options.fit))),
-          (*judge)(FitLight(surfaces, light, map, options.fit)),
+          (*judge)(FitLight(surfaces, light, map, FitOptions::Focused(one))),
+          (*judge)(FitLight(surfaces, light, map, FitOptions::AsPublished(one))),
+          (*judge)(FitLight(surfaces, light, map, one)),
           time_ms,
           (*judge)(*std::move(plan), options.guard_texels)};
 }
 
+std::string PlanSizeText(const PlanOptions& options) {
+  const std::string maps = absl::StrFormat("up to %d maps for each light, ", options.max_maps);
+  if (!options.each.has_value()) return absl::StrFormat("%s%d texels in all", maps, options.texels);
+  return absl::StrFormat("%s%d x %d texels each", maps, options.each->width, options.each->height);
+}
+
 MapSize OneMapSize(const PlanOptions& options) {
-  double texels = static_cast<double>(options.texels);
+  PlanOptions all = options;
   if (options.each.has_value()) {
-    texels = static_cast<double>(options.each->width) * options.each->height * options.max_maps;
+    all.texels = TexelsOf(*options.each) * options.max_maps;
+    all.each.reset();
   }
-  const int side = std::min(static_cast<int>(std::sqrt(texels)), kMaxMapSide);
-  return {side, side};
+  return SizeOfOneMap(all);
 }
 
 ComparedReadback CompareLights(const Readback& readback,

@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -49,6 +50,9 @@ FitComparison CompareFit(const Surfaces& surfaces,
 
 // The same for its plan; the error is the plan's.
 FitComparison ComparePlan(const Surfaces& surfaces, const Light& light, const PlanOptions& options);
+
+// "up to 4 maps for each light, 1048576 texels in all" or "..., 512 x 512 texels each".
+std::string PlanSizeText(const PlanOptions& options);
 
 // The single map that a plan is compared with: square, of no more texels than the plan may have.
 MapSize OneMapSize(const PlanOptions& options);

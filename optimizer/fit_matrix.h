@@ -1,8 +1,8 @@
 // optimizer/fit_matrix.h
 //
 // From what a search works on to a LightMatrix: search, lay the depth row, say how good it is.
-// In:   SearchInputs {light, summary, samples, surfaces}, a map size; or a map that is there
-// already. Out:  LightMatrix.   math.md 8
+// In:   SearchInputs {light, summary, samples, surfaces}, a map size; or a map that is there.
+// Out:  LightMatrix.   math.md 8
 #pragma once
 
 #include <Eigen/Core>

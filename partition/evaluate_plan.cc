@@ -14,7 +14,7 @@ namespace lightfit {
 namespace {
 
 // The samples that ask each map.
-ScratchVector<Samples> SamplesByMap(const LightView& view, const PlanLookUp& look_up) {
+ScratchVector<Samples> SamplesAskingEach(const LightView& view, const PlanLookUp& look_up) {
   ScratchVector<Samples> by_map(look_up.num_maps());
   for (Samples& samples : by_map) samples.ray_from_screen = view.samples.ray_from_screen;
   for (size_t i = 0; i < view.samples.size() && !IsStopped(i); ++i) {
@@ -25,26 +25,19 @@ ScratchVector<Samples> SamplesByMap(const LightView& view, const PlanLookUp& loo
   return by_map;
 }
 
-absl::StatusOr<double> ForetellFor(const LightView& view,
-                                   const Plan& plan,
-                                   const FitOptions& options) {
-  ScratchVector<SizedMatrix> maps;
-  for (const PlanMap& map : plan.maps) maps.push_back({map.map_from_world, map.size});
-  return ForetellWrongShare(
-      view.surfaces->readback, *view.light, maps, options.samples, plan.border);
-}
-
 }  // namespace
 
 absl::StatusOr<Figures> MeasurePlan(const LightView& view,
                                     const Plan& plan,
                                     const FitOptions& options,
-                                    double guard_texels) {
+                                    double guard_texels,
+                                    ScratchVector<Figures>* of_maps) {
   const Light& light = *view.light;
+  if (of_maps != nullptr) of_maps->clear();
   if (absl::Status status = CheckServes(view, options); !status.ok()) return status;
   const absl::StatusOr<PlanLookUp> look_up = PlanLookUp::Create(plan, light, guard_texels);
   if (!look_up.ok()) return look_up.status();
-  const ScratchVector<Samples> by_map = SamplesByMap(view, *look_up);
+  const ScratchVector<Samples> by_map = SamplesAskingEach(view, *look_up);
   const Eigen::Matrix3d ray_from_normalized = view.normalized_from_ray().inverse();
   Figures figures;
   FootprintSet footprints;
@@ -54,9 +47,12 @@ absl::StatusOr<Figures> MeasurePlan(const LightView& view,
         MapFromRay(plan.maps[k].map_from_world, light);
     if (!map_from_ray.ok()) return map_from_ray.status();
     const Eigen::Matrix3d map_from_normalized = *map_from_ray * ray_from_normalized;
-    figures.energy +=
-        MeasureFigures(by_map[k], map_from_normalized, options.metric, options.along_edge_share)
-            .energy;
+    Figures of_map =
+        MeasureFigures(by_map[k], map_from_normalized, options.metric, options.along_edge_share);
+    figures.energy += of_map.energy;
+    of_map.samples = view.samples.counts;
+    of_map.samples.used = static_cast<int64_t>(by_map[k].size());
+    if (of_maps != nullptr) of_maps->push_back(of_map);
     footprints.Add(map_from_normalized, by_map[k]);
     num_asked += by_map[k].size();
   }
@@ -84,10 +80,20 @@ absl::StatusOr<Figures> EvaluatePlan(const LightView& view,
                                      double guard_texels) {
   absl::StatusOr<Figures> figures = MeasurePlan(view, plan, options, guard_texels);
   if (!figures.ok()) return figures.status();
-  const absl::StatusOr<double> wrong_share = ForetellFor(view, plan, options);
+  const absl::StatusOr<double> wrong_share =
+      ForetellPlan(view.surfaces->readback, *view.light, plan, options.samples);
   if (!wrong_share.ok()) return wrong_share.status();
   figures->wrong_share = *wrong_share;
   return figures;
+}
+
+absl::StatusOr<double> ForetellPlan(const Readback& readback,
+                                    const Light& light,
+                                    const Plan& plan,
+                                    const SampleOptions& samples) {
+  ScratchVector<SizedMatrix> maps;
+  for (const PlanMap& map : plan.maps) maps.push_back({map.map_from_world, map.size});
+  return ForetellWrongShare(readback, light, maps, samples, plan.border);
 }
 
 }  // namespace lightfit

@@ -13,11 +13,13 @@
 
 namespace lightfit {
 
-// EvaluatePlan() without the forecast, which takes a pass over the pixels.
+// EvaluatePlan() without the forecast, which takes a pass over the pixels. `of_maps`, where it is
+// not null, gets the figures of each map over the samples that ask it.
 absl::StatusOr<Figures> MeasurePlan(const LightView& view,
                                     const Plan& plan,
                                     const FitOptions& options = {},
-                                    double guard_texels = 0.0);
+                                    double guard_texels = 0.0,
+                                    ScratchVector<Figures>* of_maps = nullptr);
 
 // As EvaluateMatrix(), each sample in the map that it asks. Samples outside of all maps, which the
 // border answers, are in no figure: FootprintStatistics::num_behind says how many. Half spaces of
@@ -29,5 +31,12 @@ absl::StatusOr<Figures> EvaluatePlan(const LightView& view,
                                      const Plan& plan,
                                      const FitOptions& options = {},
                                      double guard_texels = 0.0);
+
+// ForetellWrongShare() of a plan, as if every receiver asked the densest map that holds it; half
+// spaces and guard do not count.
+absl::StatusOr<double> ForetellPlan(const Readback& readback,
+                                    const Light& light,
+                                    const Plan& plan,
+                                    const SampleOptions& samples);
 
 }  // namespace lightfit

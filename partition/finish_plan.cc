@@ -25,15 +25,16 @@ absl::StatusOr<ScratchVector<MapOfCell>> MapsOfCells(const CellFitter& fitter,
   for (size_t k = 0; k < cells.size(); ++k) {
     const MapSize size = (*sizes)[k];
     if (!(2.0 * margin_texels < std::min(size.width, size.height))) {
-      return absl::FailedPreconditionError(
-          absl::StrFormat("light \"%s\": options.guard_texels = %g leave nothing of a map of "
-                          "%dx%d texels, one of "
-                          "%d; want fewer maps or more texels",
-                          fitter.light().name,
-                          options.guard_texels,
-                          size.width,
-                          size.height,
-                          cells.size()));
+      return absl::FailedPreconditionError(absl::StrFormat(
+          "light \"%s\": options.guard_texels = %g and fit.margin_texels = %g on "
+          "every side leave nothing of a map of %dx%d texels, one of %d; want fewer "
+          "maps or more texels",
+          fitter.light().name,
+          options.guard_texels,
+          options.fit.margin_texels,
+          size.width,
+          size.height,
+          cells.size()));
     }
     const std::optional<Eigen::Matrix3d> map_from_ray =
         fitter.MapOfSize(cells[k].bins, cells[k].map, size, margin_texels);

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "optimizer/choose_fit.h"
-#include "optimizer/figures/foretell.h"
 #include "optimizer/fit.h"
+#include "partition/evaluate_plan.h"
 #include "partition/finish_plan.h"
 #include "partition/plan_cells.h"
 #include "partition/plan_sizes.h"
@@ -18,7 +18,7 @@ namespace {
 // How much less must be foretold for a plan of more maps to be taken: docs/plans.md.
 constexpr double kMoreMapsBelow = 0.95;
 
-LightPlan PlanOfOne(const LightMatrix& matrix) {
+LightPlan OneMapPlan(const LightMatrix& matrix) {
   LightPlan plan;
   plan.light_name = matrix.light_name;
   plan.border = matrix.border;
@@ -31,13 +31,13 @@ LightPlan PlanOfOne(const LightMatrix& matrix) {
 
 // By the fit of one map, from `from`, a light in its surfaces or a view.
 template <typename... From>
-absl::StatusOr<LightPlan> PlanOfOneMap(const PlanOptions& options, const From&... from) {
+absl::StatusOr<LightPlan> FitOneMap(const PlanOptions& options, const From&... from) {
   FitOptions fit = options.fit;
   fit.margin_texels += options.guard_texels;
   if constexpr (sizeof...(From) == 1) fit.border = BorderChoice::kAutomatic;  // that of the view
   const absl::StatusOr<LightMatrix> matrix = FitLight(from..., SizeOfOneMap(options), fit);
   if (!matrix.ok()) return matrix.status();
-  return PlanOfOne(*matrix);
+  return OneMapPlan(*matrix);
 }
 
 // The best plan so far, by what is foretold where that is asked for.
@@ -47,10 +47,8 @@ class Choice {
       : surfaces_(surfaces), light_(light), options_(options) {}
 
   absl::Status Offer(LightPlan plan) {
-    ScratchVector<SizedMatrix> maps;
-    for (const LightMatrix& map : plan.maps) maps.push_back({map.map_from_world, map.map});
     const absl::StatusOr<double> share =
-        ForetellWrongShare(surfaces_.readback, light_, maps, options_.fit.samples, plan.border);
+        ForetellPlan(surfaces_.readback, light_, PlanOf(plan), options_.fit.samples);
     if (!share.ok()) return share.status();
     plan.wrong_share = *share;
     double below = 1.0;
@@ -100,11 +98,20 @@ absl::StatusOr<LightPlan> FitInBorder(const Surfaces& surfaces,
   fit.border = BorderChoice::kAutomatic;  // that of the view
   const absl::StatusOr<LightView> view = ViewLight(surfaces, light, border, fit);
   if (!view.ok()) return view.status();
+  // Few say nothing of a border between maps: the focused map, as of one map.
+  if (view->cover.ok() &&
+      static_cast<int>(view->samples.size()) < options.fit.samples.min_samples) {
+    absl::StatusOr<LightPlan> one = FitOneMap(options, *view);
+    if (one.ok() && choice != nullptr) {
+      if (absl::Status status = choice->Offer(*one); !status.ok()) return status;
+    }
+    return one;
+  }
   const absl::StatusOr<ServedRays> rays = FindServedRays(*view, fit);
   if (!rays.ok()) return rays.status();
   const PlanCells cells(*rays, light, fit, options);
   if (choice == nullptr) return PlanOfCells(*view, cells, options.max_maps, options);
-  absl::StatusOr<LightPlan> last = PlanOfOneMap(options, *view);
+  absl::StatusOr<LightPlan> last = FitOneMap(options, *view);
   if (last.ok()) {
     if (absl::Status status = choice->Offer(*last); !status.ok()) return status;
   }
@@ -136,7 +143,7 @@ absl::StatusOr<LightPlan> FitPlan(const Surfaces& surfaces,
                                   const PlanOptions& options) {
   if (absl::Status status = ValidatePlanOptions(options); !status.ok()) return status;
   if (absl::Status status = ValidateLight(light); !status.ok()) return status;
-  if (options.max_maps == 1) return PlanOfOneMap(options, surfaces, light);
+  if (options.max_maps == 1) return FitOneMap(options, surfaces, light);
   const BorderChoice border = options.fit.border;
   const Border first = border == BorderChoice::kDark ? Border::kDark : Border::kLit;
   if (!options.choose_by_forecast || !surfaces.readback.KnowsFacing(light.shadow_bit)) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "absl/strings/str_format.h"
+#include "absl/strings/strip.h"
 #include "base/stop.h"
 
 namespace lightfit {
@@ -16,13 +17,23 @@ absl::Status Validate(absl::Span<const PlannedLight> lights, const PlanOptions& 
     return absl::InvalidArgumentError(absl::StrFormat(
         "light \"%s\": weight = %g, want finite and more than 0", light.light.name, light.weight));
   }
-  if (options.each.has_value()) return ValidatePlanOptions(options);
-  PlanOptions share = options;
-  share.texels /= std::max<int64_t>(1, static_cast<int64_t>(lights.size()));
-  return ValidatePlanOptions(share);
+  return ValidateSharedBudget(static_cast<int>(lights.size()), options);
 }
 
 }  // namespace
+
+absl::Status ValidateSharedBudget(int num_lights, const PlanOptions& options) {
+  if (options.each.has_value() || num_lights <= 1) return ValidatePlanOptions(options);
+  PlanOptions share = options;
+  share.texels /= num_lights;
+  absl::Status status = ValidatePlanOptions(share);
+  if (status.ok() || !ValidatePlanOptions(options).ok()) return status;
+  return absl::InvalidArgumentError(
+      absl::StrFormat("options.texels = %d: each of %d lights has %s",
+                      options.texels,
+                      num_lights,
+                      absl::StripPrefix(status.message(), "options.")));
+}
 
 LightPlans FitPlans(const Surfaces& surfaces,
                     absl::Span<const PlannedLight> lights,

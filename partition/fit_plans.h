@@ -9,6 +9,7 @@
 // light has with an equal share.
 #pragma once
 
+#include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
 #include "base/scratch.h"
@@ -24,6 +25,10 @@ struct PlannedLight {
 };
 
 using LightPlans = ScratchVector<absl::StatusOr<LightPlan>>;
+
+// Of so many lights, which PlanOptions::texels are divided among. InvalidArgument names the field,
+// and what each light would have.
+absl::Status ValidateSharedBudget(int num_lights, const PlanOptions& options);
 
 // PlanOptions::texels are those of all lights together; never exceeded. Element i belongs to
 // lights[i] and has its own status; a light without a plan leaves its texels to the others. With

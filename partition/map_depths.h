@@ -2,7 +2,7 @@
 //
 // The depth rows of several maps, over the receivers that ask each of them.
 // In:   the LightView, the maps.
-// Out:  MapDepths; rows that have all of them in 0 ... 1.   docs/mathematics.md 8
+// Out:  MapDepths; rows that have all of them in 0 ... 1.   docs/mathematics.md 11
 //
 // A receiver asks the densest map that holds it, whatever cell its bin is in, so that what a cell
 // covers does not bound what its map is asked about: the read-back's pixels do.

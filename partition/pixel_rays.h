@@ -1,8 +1,8 @@
 // partition/pixel_rays.h
 //
-// The rays of a read-back's pixels: of their centres, and of their corners on the pixel's own
-// plane. In:   a LightView, the samples that count; a pixel. Out:  rays in the view's normalised
-// coordinates.   docs/mathematics.md (21)
+// The rays of a read-back's pixels: of centres, and of corners on the pixel's own plane.
+// In:   a LightView, the samples that count; a pixel.
+// Out:  rays in the view's normalised coordinates.   docs/mathematics.md (21)
 #pragma once
 
 #include <Eigen/Core>

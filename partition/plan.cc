@@ -10,6 +10,19 @@
 
 namespace lightfit {
 
+Plan PlanOfOneMap(absl::string_view light_name,
+                  const Eigen::Matrix4d& map_from_world,
+                  MapSize size,
+                  Border border) {
+  Plan plan;
+  plan.light_name.assign(light_name.data(), light_name.size());
+  plan.border = border;
+  PlanMap& only = plan.maps.emplace_back();
+  only.map_from_world = map_from_world;
+  only.size = size;
+  return plan;
+}
+
 int64_t NumTexels(const Plan& plan) {
   int64_t sum = 0;
   for (const PlanMap& map : plan.maps) sum += int64_t{map.size.width} * map.size.height;

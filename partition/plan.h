@@ -15,6 +15,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
 #include "absl/types/span.h"
 #include "base/scratch.h"
 #include "geometry/border.h"
@@ -40,6 +41,12 @@ struct Plan {
   Border border = Border::kLit;  // what a receiver finds that no map may be asked about
   ScratchVector<PlanMap> maps;
 };
+
+// A plan of a single map, whoever made it.
+Plan PlanOfOneMap(absl::string_view light_name,
+                  const Eigen::Matrix4d& map_from_world,
+                  MapSize size,
+                  Border border);
 
 // Texels of all maps.
 int64_t NumTexels(const Plan& plan);

@@ -18,7 +18,8 @@ struct PlanOptions {
   // parallelograms of least energy in any case.
   FitOptions fit;
 
-  // 1 ... kMaxPlanMaps. A plan may have fewer.
+  // 1 ... kMaxPlanMaps. A plan may have fewer; of fewer than fit.samples.min_samples samples it is
+  // the focused map, where there is one.
   int max_maps = 4;
 
   // Whether plans of fewer maps, one included, are tried too and the one taken of which the fewest

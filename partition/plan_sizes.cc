@@ -16,11 +16,12 @@ namespace {
 
 // Of about this shape, and of no more texels.
 MapSize WholeSize(const CellMap& map, double texels) {
-  const double aspect = map.width / map.height;
-  const int width = std::clamp(
-      static_cast<int>(std::lround(std::sqrt(texels * aspect))), 1, static_cast<int>(texels));
-  const int height = std::max(1, static_cast<int>(texels / width));
-  return {std::min(width, kMaxMapSide), std::min(height, kMaxMapSide)};
+  const auto side_of = [](double side) {
+    return static_cast<int>(std::clamp(side, 1.0, static_cast<double>(kMaxMapSide)));
+  };
+  const int width =
+      side_of(std::round(std::min(std::sqrt(texels * map.width / map.height), texels)));
+  return {width, side_of(texels / width)};
 }
 
 // Energy of a cell's map cut into other texels: a share of it falls with the width, the other with

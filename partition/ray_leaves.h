@@ -14,6 +14,12 @@
 
 namespace lightfit {
 
+// So that there are about `max_leaves`, none of fewer items than are worth a bin.
+inline size_t MostInLeaf(size_t num_items, int max_leaves) {
+  constexpr size_t kLeast = 8;
+  return std::max(kLeast, (num_items + max_leaves - 1) / static_cast<size_t>(max_leaves));
+}
+
 // Sorts items [begin, end) and calls visit(begin, end) for each leaf. `Item` has `direction`, an
 // Eigen::Vector3d, and `Key()`, which no other item has.
 template <typename Item, typename Visitor>

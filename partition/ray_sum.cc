@@ -26,12 +26,24 @@ DepthRange Union(DepthRange a, DepthRange b) {
   return {std::min(a.near, b.near), std::max(a.far, b.far)};
 }
 
-RaySample Transformed(const RaySample& sample, const Eigen::Matrix3d& new_from_old) {
-  RaySample result = sample;
-  result.X = new_from_old * sample.X;
-  result.G = SymmetricCongruence(new_from_old.inverse().transpose()) * sample.G;
-  return result;
-}
+// Samples in rays X' = N X.
+class SampleTransform {
+ public:
+  explicit SampleTransform(const Eigen::Matrix3d& new_from_old)
+      : new_from_old_(new_from_old),
+        new_from_old_tensor_(SymmetricCongruence(new_from_old.inverse().transpose())) {}
+
+  RaySample operator()(const RaySample& sample) const {
+    RaySample result = sample;
+    result.X = new_from_old_ * sample.X;
+    result.G = new_from_old_tensor_ * sample.G;
+    return result;
+  }
+
+ private:
+  Eigen::Matrix3d new_from_old_;
+  Eigen::Matrix<double, 6, 6> new_from_old_tensor_;
+};
 
 // Coordinates in which all covered rays lie in front, or nothing where they surround the light.
 std::optional<Eigen::Matrix3d> NormalizedFromRay(const RaySum& sum) {
@@ -74,19 +86,21 @@ class Binner {
     for (const RaySample& sample : sum_.samples) {
       items.push_back({(N * sample.X).normalized(), static_cast<int>(items.size())});
     }
-    constexpr size_t kLeastInBin = 8;
-    const size_t most_in_leaf =
-        std::max(kLeastInBin, (items.size() + max_bins - 1) / static_cast<size_t>(max_bins));
     if (!items.empty()) {
-      ForEachLeaf(items, 0, items.size(), most_in_leaf, [&](size_t begin, size_t end) {
-        AddBin(absl::MakeConstSpan(items).subspan(begin, end - begin));
-      });
+      const SampleTransform transform(N);
+      ForEachLeaf(items,
+                  0,
+                  items.size(),
+                  MostInLeaf(items.size(), max_bins),
+                  [&](size_t begin, size_t end) {
+                    AddBin(absl::MakeConstSpan(items).subspan(begin, end - begin), transform);
+                  });
     }
     return std::move(result_);
   }
 
  private:
-  void AddBin(absl::Span<const Item> items) {
+  void AddBin(absl::Span<const Item> items, const SampleTransform& transform) {
     RayBin bin;
     bin.middle = Eigen::Vector3d::Zero();
     bin.samples_begin = static_cast<int>(result_.samples.size());
@@ -103,8 +117,7 @@ class Binner {
         bin.num_covered += covered.num_covered;
         continue;
       }
-      result_.samples.push_back(
-          Transformed(sum_.samples[item.index - num_covered], result_.normalized_from_ray));
+      result_.samples.push_back(transform(sum_.samples[item.index - num_covered]));
       result_.num_boundary += result_.samples.back().is_boundary ? 1 : 0;
     }
     bin.middle.normalize();
@@ -152,17 +165,20 @@ Depths DepthsOf(const MapOfCell& map, const ServedRays& rays, const Light& light
   for (const RayBin& bin : rays.bins) {
     Eigen::AlignedBox2d box;
     double w_bin = std::numeric_limits<double>::infinity();
+    bool reaches_behind = false;  // then it may lie anywhere in the map
     for (const Eigen::Vector3d& ray : bin.hull) {
       const Eigen::Vector3d at = map.map_from_ray * ray;
+      reaches_behind = reaches_behind || !(at.z() > 0.0);
       if (!(at.z() > 0.0)) continue;
       box.extend(at.hnormalized());
       w_bin = std::min(w_bin, at.z() / LengthOf(light_from_ray * ray, light));
     }
-    if (box.isEmpty() || !(box.min().x() < width && box.max().x() > 0.0) ||
-        !(box.min().y() < height && box.max().y() > 0.0)) {
+    if (box.isEmpty()) continue;
+    if (!reaches_behind && (!(box.min().x() < width && box.max().x() > 0.0) ||
+                            !(box.min().y() < height && box.max().y() > 0.0))) {
       continue;
     }
-    if (std::isfinite(w_corners)) w_bin = std::max(w_bin, w_corners);
+    if (std::isfinite(w_corners)) w_bin = reaches_behind ? w_corners : std::max(w_bin, w_corners);
     w_least = std::min(w_least, w_bin);
     near = std::min(near, w_bin * bin.distance.near);
   }
@@ -180,17 +196,17 @@ Depths DepthsOf(const MapOfCell& map, const ServedRays& rays, const Light& light
 // Energies of the boundary samples, in the maps that they ask.
 void MeasureMaps(const ServedRays& rays,
                  absl::Span<const RayMap> ray_maps,
-                 const FitOptions& fit,
+                 const PlanOptions& options,
                  LightPlan* plan) {
   ScratchVector<MapExtents> extents;
   for (const RayMap& map : ray_maps) extents.push_back(MapExtents(map.map_from_ray));
   for (const RaySample& sample : rays.samples) {
     if (!sample.is_boundary) continue;
-    const int asked = DensestAt(ray_maps, sample.X);
+    const int asked = DensestAt(ray_maps, sample.X, options.guard_texels);
     if (asked < 0) continue;
     const Extents of = extents[asked].Of(sample);
     const double squared = of.along_u + of.along_v;
-    const double energy = sample.weight * (IsL1(fit.metric) ? std::sqrt(squared) : squared);
+    const double energy = sample.weight * (IsL1(options.fit.metric) ? std::sqrt(squared) : squared);
     Figures& figures = plan->maps[asked].figures;
     figures.energy += energy;
     ++figures.samples.used;
@@ -218,8 +234,9 @@ RaySum SumOfRays(const ServedRays& rays, const LightView& view, int most_samples
   const auto num_samples = static_cast<int>(rays.samples.size());
   const int stride = std::max(1, (num_samples + most_samples - 1) / std::max(1, most_samples));
   const int num_taken = (num_samples + stride - 1) / stride;
+  const SampleTransform transform(light_from_ray);
   for (int i = 0; i < num_samples; i += stride) {
-    sum.samples.push_back(Transformed(rays.samples[i], light_from_ray));
+    sum.samples.push_back(transform(rays.samples[i]));
     sum.samples.back().weight *= static_cast<double>(num_samples) / num_taken;
   }
   return sum;
@@ -250,9 +267,7 @@ absl::Status AddToSum(const RaySum& other, RaySum* sum) {
   return absl::OkStatus();
 }
 
-ServedRays RaysOfSum(const RaySum& sum, const ServedRaysOptions& options) {
-  return Binner(sum).Bin(options.max_bins);
-}
+ServedRays RaysOfSum(const RaySum& sum, int max_bins) { return Binner(sum).Bin(max_bins); }
 
 absl::StatusOr<LightPlan> FitRaySum(const RaySum& sum, const PlanOptions& options) {
   if (absl::Status status = ValidatePlanOptions(options); !status.ok()) return status;
@@ -290,7 +305,7 @@ absl::StatusOr<LightPlan> FitRaySum(const RaySum& sum, const PlanOptions& option
     return absl::FailedPreconditionError(absl::StrFormat(
         "light \"%s\": %d texels are too few for any map", sum.light.name, options.texels));
   }
-  MeasureMaps(rays, ray_maps, options.fit, &plan);
+  MeasureMaps(rays, ray_maps, options, &plan);
   if (absl::Status status = CheckStop(sum.light); !status.ok()) return status;
   return plan;
 }

@@ -50,8 +50,8 @@ RaySum SumOfRays(const ServedRays& rays, const LightView& view, int most_samples
 // InvalidArgument, and `sum` as it was, when light or border are others.
 absl::Status AddToSum(const RaySum& other, RaySum* sum);
 
-// All of it, in bins.
-ServedRays RaysOfSum(const RaySum& sum, const ServedRaysOptions& options = {});
+// All of it, in bins: about so many at most.
+ServedRays RaysOfSum(const RaySum& sum, int max_bins = ServedRaysOptions().max_bins);
 
 // The plan of `options.max_maps` maps for all of them, in the sum's border: nothing is foretold.
 // Every receiver that was covered is within 0 ... 1 in whatever map it asks. Figures of a map are

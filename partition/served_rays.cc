@@ -23,7 +23,6 @@ namespace {
 
 // Covered pixels that count as samples are spread out if there are more.
 constexpr int64_t kMostFloorSamples = 4096;
-constexpr int kLeastInBin = 8;
 
 // Something that goes into a bin: a covered pixel, or a boundary sample.
 struct Item {
@@ -52,12 +51,12 @@ class Finder {
     result_.has_single_cover = view_.cover.ok();
     CollectItems();
     if (absl::Status status = CheckStop(*view_.light); !status.ok()) return status;
-    const size_t most_in_leaf =
-        std::max<size_t>(kLeastInBin, (items_.size() + options_.max_bins - 1) / options_.max_bins);
     if (!items_.empty()) {
-      ForEachLeaf(items_, 0, items_.size(), most_in_leaf, [this](size_t begin, size_t end) {
-        AddBin(begin, end);
-      });
+      ForEachLeaf(items_,
+                  0,
+                  items_.size(),
+                  MostInLeaf(items_.size(), options_.max_bins),
+                  [this](size_t begin, size_t end) { AddBin(begin, end); });
     }
     WeighFloor();
     if (absl::Status status = CheckStop(*view_.light); !status.ok()) return status;

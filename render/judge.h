@@ -1,8 +1,8 @@
 // render/judge.h
 //
 // The shadows that a matrix gives, and where they are wrong.
-// In:   a RayCaster, what the camera sees, the true lighting, a light's matrix, map size and
-// border. Out:  the shadow images under two bias models, nearest texel, and the wrong pixels.
+// In:   a RayCaster, what the camera sees, the true lighting, a light's matrix, its map and border.
+// Out:  the shadow images under two bias models, nearest texel, and the wrong pixels.
 //
 // A pixel is judged when its surface faces the light; it is wrong when the map says other than the
 // truth. Both models know the receiver's plane: its depth on the ray of the texel's centre is what

@@ -4,8 +4,7 @@
 // In:   a RayCaster, what the camera sees, the true lighting, a light and its TexelMaps.
 // Out:  the shadow images under the two bias models of render/judge.h, and the wrong pixels.
 //
-// What judge_plan (matrices) and shipped/judge_rays (paraboloids, pages) have in common.   math.md
-// 10
+// What judge_plan (matrices) and shipped/judge_rays (paraboloids, pages) share.   math.md 10
 #pragma once
 
 #include <Eigen/Core>

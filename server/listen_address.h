@@ -3,7 +3,8 @@
 // Where a server listens: parsed, checked and named before gRPC is asked, whose own errors say
 // little.
 // In:   "127.0.0.1:50071", "[::1]:0", "localhost:50071", "0.0.0.0:50071",
-// "unix:/run/lightfit.sock". Out:  ListenAddress.
+//       "unix:/run/lightfit.sock".
+// Out:  ListenAddress.
 #pragma once
 
 #include <string>

@@ -82,7 +82,9 @@ v1::Allocation AllocationToProto(const AllocationReport& report) {
   if (fit.has_plan_options()) proto.mutable_plan_options()->Swap(fit.mutable_plan_options());
   if (report.budget_texels) proto.set_budget_texels(*report.budget_texels);
   if (report.tolerance) *proto.mutable_tolerance() = ToleranceToProto(*report.tolerance);
-  *proto.mutable_rules() = MapSidesToProto<v1::MapSizeRules>(report.rules);
+  if (!report.fit.plan_options.has_value()) {
+    *proto.mutable_rules() = MapSidesToProto<v1::MapSizeRules>(report.rules);
+  }
   proto.set_texels(report.Texels());
   for (size_t i = 0; i < report.entries.size(); ++i) {
     const AllocationEntry& entry = report.entries[i];

@@ -112,7 +112,7 @@ void SetSeveralMaps(const LightFit& fit, const FitReport& report, v1::LightResul
   if (figures.wrong_share.has_value()) {
     *proto->mutable_foretold_wrong() = ForetoldToProto(*figures.wrong_share, fit);
   }
-  if (figures.samples.used == 0) return;  // of a whole shot: its frames have them
+  if (figures.samples.receivers == 0) return;  // of no read-back: a whole shot's frames have them
   *proto->mutable_footprint() =
       FootprintToProto(figures.footprint, report.options.compute_statistics);
   *proto->mutable_samples() = SampleCountsToProto(figures.samples);
@@ -183,6 +183,12 @@ v1::SampleCounts SampleCountsToProto(const SampleCounts& counts) {
   proto.set_used(counts.used);
   proto.set_beyond_map(counts.beyond_map);
   return proto;
+}
+
+void SetPlan(LightPlan plan, const Figures& figures, double guard_texels, LightFit* fit) {
+  fit->matrix = plan.maps[0];
+  fit->wrong_share = figures.wrong_share;
+  fit->plan = PlanFit{std::move(plan), figures, guard_texels};
 }
 
 v1::FitResult FitResultToProto(const FitReport& report) {

@@ -46,6 +46,9 @@ struct LightFit {
       time_ms;  // only when asked for: results with times are never the same twice
 };
 
+// Makes the plan the light's answer; its only map, where it has one, is the light's matrix too.
+void SetPlan(LightPlan plan, const Figures& figures, double guard_texels, LightFit* fit);
+
 struct FitReport {
   std::string source;  // where the read-back came from, usually the file's name
   Camera camera;

@@ -25,7 +25,7 @@
 #include "bench/scene_run.h"
 #include "jobs/compare/stage.h"
 #include "jobs/schemes/judge_maps.h"
-#include "optimizer/figures/foretell.h"
+#include "partition/evaluate_plan.h"
 #include "render/plan_costs.h"
 #include "render/true_lighting.h"
 
@@ -106,12 +106,9 @@ class LightBench {
     measured->is_plan = true;
     measured->overlap = costs->overlap;
     measured->draws = costs->draws_per_caster;
-    std::vector<SizedMatrix> maps;
-    for (const PlanMap& map : plan.maps) maps.push_back({map.map_from_world, map.size});
     constexpr double kPixels = static_cast<double>(kScreenSize) * kScreenSize;
     measured->foretold =
-        kPixels *
-        ForetellWrongShare(LitOf(row).readback, small_.light, maps, {}, plan.border).value_or(0.0);
+        kPixels * ForetellPlan(LitOf(row).readback, small_.light, plan, {}).value_or(0.0);
     return true;
   }
 

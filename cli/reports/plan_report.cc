@@ -18,14 +18,6 @@ std::string EnergyText(const absl::StatusOr<JudgedMatrix>& map) {
 
 }  // namespace
 
-std::string PlanSizeText(const PlanOptions& options) {
-  const std::string maps = absl::StrCat("up to ", options.max_maps, " maps for each light, ");
-  return options.each.has_value()
-             ? absl::StrFormat(
-                   "%s%d x %d texels each", maps, options.each->width, options.each->height)
-             : absl::StrCat(maps, options.texels, " texels in all");
-}
-
 std::string PlanMethodText(const PlanOptions& options) {
   return absl::StrCat("maps that are parallelograms, ",
                       WordFor(MetricWords(), options.fit.metric),

@@ -11,9 +11,6 @@
 
 namespace lightfit::cli {
 
-// "up to 4 maps for each light, 1048576 texels in all" or "..., 512 x 512 texels each".
-std::string PlanSizeText(const PlanOptions& options);
-
 // "maps that are parallelograms, l1-edge metric, around what is shadowed".
 std::string PlanMethodText(const PlanOptions& options);
 

@@ -10,6 +10,7 @@
 #include "base/number.h"
 #include "base/table.h"
 #include "cli/reports/fit_report.h"
+#include "cli/reports/plan_report.h"
 #include "jobs/shot/totals.h"
 
 namespace lightfit::cli {
@@ -189,7 +190,8 @@ std::string ShotReportText(const ShotContext& context) {
                                       job.frames.size(),
                                       job.frames.size() == 1 ? "frame" : "frames",
                                       MapsText(job),
-                                      MethodText(job.fit())),
+                                      job.plans.has_value() ? PlanMethodText(job.plans->plan)
+                                                            : MethodText(job.fit())),
                       TrackerText(job),
                       "\n",
                       TotalsTable(context).Text(),

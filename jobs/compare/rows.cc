@@ -50,8 +50,7 @@ void MeasureSeveral(const LightView& view,
   FitOptions options = FigureOptions(fit);
   options.metric = Metric::kL2;
   options.along_edge_share = 1.0;
-  const absl::StatusOr<Figures> figures =
-      EvaluatePlan(view, plan, options, row->drawn.guard_texels);
+  const absl::StatusOr<Figures> figures = MeasurePlan(view, plan, options, row->drawn.guard_texels);
   if (!figures.ok()) {
     return AddNote("no energy: " + std::string(figures.status().message()), row);
   }
@@ -59,10 +58,7 @@ void MeasureSeveral(const LightView& view,
 }
 
 std::optional<double> Foretell(const LitStage& frame, const Plan& plan) {
-  std::vector<SizedMatrix> maps;
-  for (const PlanMap& map : plan.maps) maps.push_back({map.map_from_world, map.size});
-  const absl::StatusOr<double> share =
-      ForetellWrongShare(frame.readback, frame.light, maps, {}, plan.border);
+  const absl::StatusOr<double> share = ForetellPlan(frame.readback, frame.light, plan, {});
   return share.ok() ? std::optional<double>(*share) : std::nullopt;
 }
 
@@ -74,13 +70,8 @@ Scheme GivenScheme(const GivenMatrices& given, MapSize map) {
   return {given.name, [&given, map](const SchemeInput& input) -> absl::StatusOr<SchemeMaps> {
             const absl::StatusOr<GivenMatrix> matrix = given.Of(input.light.name);
             if (!matrix.ok()) return matrix.status();
-            Plan plan;
-            plan.light_name = input.light.name;
-            plan.border = matrix->border;
-            plan.maps.emplace_back();
-            plan.maps[0].map_from_world = matrix->map_from_world;
-            plan.maps[0].size = map;
-            return SchemeMaps{std::move(plan)};
+            return SchemeMaps{
+                PlanOfOneMap(input.light.name, matrix->map_from_world, map, matrix->border)};
           }};
 }
 

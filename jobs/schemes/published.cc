@@ -37,15 +37,14 @@ Scheme MethodScheme(Method method, const SchemeBudget& budget) {
       MethodName(method), [method, budget](const SchemeInput& input) -> absl::StatusOr<SchemeMaps> {
         const absl::StatusOr<MethodMap> map = SetUpMap(method, InputOf(input, budget.map));
         if (!map.ok()) return map.status();
-        Plan plan;
-        plan.light_name = input.light.name;
-        PlanMap& only = plan.maps.emplace_back();
-        only.size = budget.map;
         // Exactly the method's own where there is no filter to make room for.
-        only.map_from_world = budget.guard_texels > 0.0
-                                  ? WithMargin(map->map_from_world, budget.map, budget.guard_texels)
-                                  : map->map_from_world;
-        return SchemeMaps{std::move(plan), budget.guard_texels, map->note};
+        const Eigen::Matrix4d map_from_world =
+            budget.guard_texels > 0.0
+                ? WithMargin(map->map_from_world, budget.map, budget.guard_texels)
+                : map->map_from_world;
+        return SchemeMaps{PlanOfOneMap(input.light.name, map_from_world, budget.map, Border::kLit),
+                          budget.guard_texels,
+                          map->note};
       }};
 }
 

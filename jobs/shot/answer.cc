@@ -5,13 +5,7 @@ namespace lightfit {
 Plan LookUpOf(const ShotAnswer& answer) {
   if (const auto* tracked = std::get_if<TrackedPlan>(&answer)) return PlanOf(tracked->plan);
   const LightMatrix& matrix = std::get<TrackedMatrix>(answer).matrix;
-  Plan plan;
-  plan.light_name = matrix.light_name;
-  plan.border = matrix.border;
-  PlanMap& map = plan.maps.emplace_back();
-  map.map_from_world = matrix.map_from_world;
-  map.size = matrix.map;
-  return plan;
+  return PlanOfOneMap(matrix.light_name, matrix.map_from_world, matrix.map, matrix.border);
 }
 
 ShotLookUps LookUpsOf(const ShotAnswers& answers) {

@@ -2,6 +2,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "jobs/fit_comparison.h"
 
 namespace lightfit {
 
@@ -21,13 +22,7 @@ std::string MapsText(const ShotJob& job) {
   if (!job.plans.has_value()) {
     return absl::StrFormat("map %d x %d texels", job.map.width, job.map.height);
   }
-  const PlanOptions& plan = job.plans->plan;
-  return absl::StrFormat(
-      "up to %d maps for each light, %s",
-      plan.max_maps,
-      plan.each.has_value()
-          ? absl::StrFormat("%d x %d texels each", plan.each->width, plan.each->height)
-          : absl::StrFormat("%d texels in all", plan.texels));
+  return PlanSizeText(job.plans->plan);
 }
 
 std::string ShotPaths::Result(ShotMode mode, const ShotFrame& frame) const {

@@ -37,6 +37,24 @@ absl::StatusOr<Crawl> CrawlBetween(const ShotJob& job,
       job.fit().samples);
 }
 
+// The maps of `plan` get their own figures, of this frame's samples.
+absl::StatusOr<Figures> JudgePlanHere(const LightView& view,
+                                      const Plan& look_up,
+                                      const FitOptions& options,
+                                      double guard_texels,
+                                      LightPlan* plan) {
+  ScratchVector<Figures> of_maps;
+  absl::StatusOr<Figures> figures = MeasurePlan(view, look_up, options, guard_texels, &of_maps);
+  if (!figures.ok()) return figures.status();
+  const absl::StatusOr<double> wrong_share =
+      ForetellPlan(view.surfaces->readback, *view.light, look_up, options.samples);
+  if (!wrong_share.ok()) return wrong_share.status();
+  figures->wrong_share = *wrong_share;
+  for (size_t k = 0; k < of_maps.size(); ++k) plan->maps[k].figures = of_maps[k];
+  plan->energy = figures->energy;
+  return figures;
+}
+
 absl::StatusOr<ShotFit> JudgeFit(const ShotJob& job,
                                  const LightView& view,
                                  const ShotAnswer& answer,
@@ -53,13 +71,17 @@ absl::StatusOr<ShotFit> JudgeFit(const ShotJob& job,
   }
   const LightView& judged = other.has_value() ? *other : view;
   const FitOptions options = AnyBorder(job.fit());
-  absl::StatusOr<Figures> figures =
-      job.plans.has_value()
-          ? EvaluatePlan(judged, now, options, job.plans->plan.guard_texels)
-          : EvaluateMatrix(
-                judged, now.maps[0].map_from_world, now.maps[0].size, options, now.border);
-  if (!figures.ok()) return figures.status();
-  fit.figures = *std::move(figures);
+  if (auto* tracked = std::get_if<TrackedPlan>(&fit.answer)) {
+    absl::StatusOr<Figures> figures =
+        JudgePlanHere(judged, now, options, job.plans->plan.guard_texels, &tracked->plan);
+    if (!figures.ok()) return figures.status();
+    fit.figures = *std::move(figures);
+  } else {
+    absl::StatusOr<Figures> figures =
+        EvaluateMatrix(judged, now.maps[0].map_from_world, now.maps[0].size, options, now.border);
+    if (!figures.ok()) return figures.status();
+    fit.figures = *std::move(figures);
+  }
   if (file_before == nullptr || !before.has_value()) return fit;
   const absl::StatusOr<Crawl> crawl = CrawlBetween(job, view, *file_before, *before, now);
   if (!crawl.ok()) return crawl.status();
@@ -108,12 +130,7 @@ ShotLookUps LookUpsOf(const ShotJob& job, const v1::FitResult& result) {
         MatrixFromProto(light.map_from_world(), "mapFromWorld");
     const absl::StatusOr<Border> border = BorderFromProto(light.border(), "border");
     if (!map.ok() || !border.ok()) continue;
-    TrackedMatrix tracked;
-    tracked.matrix.light_name = job.lights[i].name;
-    tracked.matrix.map = job.map;
-    tracked.matrix.map_from_world = *map;
-    tracked.matrix.border = *border;
-    look_ups[i] = LookUpOf(tracked);
+    look_ups[i] = PlanOfOneMap(job.lights[i].name, *map, job.map, *border);
   }
   return look_ups;
 }

@@ -25,13 +25,12 @@ v1::ShotMode ModeToProto(ShotMode mode) {
 
 void SetAnswer(const ShotFit& shot_fit, const ShotJob& job, LightFit* fit) {
   if (const auto* tracked = std::get_if<TrackedPlan>(&shot_fit.answer)) {
-    fit->plan = PlanFit{tracked->plan, shot_fit.figures, job.plans->plan.guard_texels};
-    fit->matrix = tracked->plan.maps[0];  // the answer where it is the only one
+    SetPlan(tracked->plan, shot_fit.figures, job.plans->plan.guard_texels, fit);
   } else {
     fit->matrix = std::get<TrackedMatrix>(shot_fit.answer).matrix;
     fit->matrix->figures = shot_fit.figures;
+    fit->wrong_share = shot_fit.figures.wrong_share;
   }
-  fit->wrong_share = shot_fit.figures.wrong_share;
 }
 
 FitReport ReportOf(const ShotJob& job,

@@ -140,12 +140,12 @@ FitReport ReportOf(const ShotContext& context, const ShotAnswers& plans) {
     LightFit fit;
     fit.light = job.lights[i];
     if (plans[i].ok()) {
-      const LightPlan& plan = std::get<TrackedPlan>(*plans[i]).plan;
-      fit.plan = PlanFit{plan, {}, job.plans->plan.guard_texels};
+      Figures figures;
       for (const auto& rows : context.rows[static_cast<size_t>(ShotMode::kPerShot)]) {
-        if (i < rows.size() && rows[i].error.empty()) fit.plan->figures.energy += rows[i].energy;
+        if (i < rows.size() && rows[i].error.empty()) figures.energy += rows[i].energy;
       }
-      fit.matrix = plan.maps[0];
+      SetPlan(std::get<TrackedPlan>(*plans[i]).plan, figures, job.plans->plan.guard_texels, &fit);
+      if (fit.plan->plan.maps.size() == 1) fit.matrix->figures.energy = figures.energy;
     } else {
       fit.matrix = plans[i].status();
     }

@@ -1,8 +1,8 @@
 // jobs/shot/whole_plans.h
 //
 // One plan per light for all frames of a shot.
-// In:   ShotContext; every frame is read once.
-// Out:  the plans, with their energies on the samples of all frames.
+// In:   ShotContext; every frame is read once more.
+// Out:  the plans.
 //
 // Every frame has no more samples and bins than its share of what fits in memory; of a shot of up
 // to some thirty frames all count.

@@ -1,8 +1,8 @@
 // optimizer/figures/forecast_places.h
 //
-// Where forecasts look: which pixels, which places of a texel's centre, and what the read-back
-// shows around a place. In:   Readback, a place on the screen, a pixel's plane. Out:  pixels and
-// their bilinear weights; whether a pixel lies on another one's surface.
+// Where forecasts look: which pixels, which places of a texel's centre, what is seen there.
+// In:   Readback, a place on the screen, a pixel's plane.
+// Out:  pixels and their bilinear weights; whether a pixel lies on another one's surface.
 #pragma once
 
 #include <Eigen/Core>

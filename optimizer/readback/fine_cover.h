@@ -1,8 +1,8 @@
 // optimizer/readback/fine_cover.h
 //
-// What stands between the pixels of a read-back: things thinner than one, for the map's cover
-// alone. In:   Readback with a FineCover. Out:  the same view as one or two finer read-backs, of
-// the nearest and of the furthest surfaces.
+// What stands between the pixels of a read-back: things thinner than one, for the cover alone.
+// In:   Readback with a FineCover.
+// Out:  the same view as one or two finer read-backs, of the nearest and of the furthest surfaces.
 #pragma once
 
 #include "absl/status/status.h"

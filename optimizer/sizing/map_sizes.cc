@@ -68,6 +68,14 @@ std::vector<int> AllowedSides(const MapSizeRules& rules) {
   return sides;
 }
 
+bool KeepsRules(MapSize map, const MapSizeRules& rules) {
+  for (const int side : {map.width, map.height}) {
+    if (side < rules.min_side || side > rules.max_side) return false;
+    if (rules.powers_of_two ? (side & (side - 1)) != 0 : side % rules.multiple != 0) return false;
+  }
+  return true;
+}
+
 std::vector<RatedSize> WorthwhileSizes(std::vector<RatedSize> sizes) {
   std::sort(sizes.begin(), sizes.end(), [](const RatedSize& a, const RatedSize& b) {
     return std::tie(a.texels, a.cost, a.map.width) < std::tie(b.texels, b.cost, b.map.width);

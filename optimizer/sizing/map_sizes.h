@@ -29,6 +29,9 @@ absl::Status ValidateMapSizeRules(const MapSizeRules& rules, double margin_texel
 // nothing is to be gained by smaller steps.
 std::vector<int> AllowedSides(const MapSizeRules& rules);
 
+// Whether both sides are among them, or, of multiples, would be but for the steps.
+bool KeepsRules(MapSize map, const MapSizeRules& rules);
+
 inline int64_t TexelsOf(MapSize map) { return int64_t{map.width} * map.height; }
 
 // A size, and what a light's map of that size costs (its energy, say).

@@ -1,9 +1,8 @@
 // partition/published/lloyd_error.h
 //
 // How many texels shadow maps need for a view frustum, by formula, for two lights.
-// In:      LloydView {near, far, half_angle_rad}; the warp n' or its parameter eta; a number of
-// maps. Out:     errors (texel widths over pixel widths) and storage factors (texels over pixels
-// without
+// In:      LloydView {near, far, half_angle_rad}; the warp n' or its parameter eta; how many maps.
+// Out:     errors (texel widths over pixel widths) and storage factors (texels over pixels without
 //          perspective aliasing), for a map and an image of 1 x 1.
 // Symbols: n, f near and far; alpha = f/n; z camera depth; theta half of the field of view;
 //          n' (`warp`) distance of the warp's centre from the near plane; f' = n' + f - n.

@@ -103,7 +103,7 @@ class Divider {
     }
     // Samples go with the pixels that ask the same map.
     for (int i = bin.samples_begin; i < bin.samples_end; ++i) {
-      const int asked = DensestAt(maps_, rays_.samples[i].X);
+      const int asked = DensestAt(maps_, rays_.samples[i].X, guard_texels_);
       const auto part = std::find_if(
           parts.begin(), parts.end(), [asked](const Part& p) { return p.asked == asked; });
       (part == parts.end() ? parts.front() : *part).samples.push_back(i);

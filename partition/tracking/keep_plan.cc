@@ -63,7 +63,15 @@ ScratchVector<int> LargestGroup(const ServedRays& rays,
                                 const ScratchVector<int>& bins,
                                 const KeptMaps& maps) {
   ScratchVector<ScratchVector<int>> groups(maps.size());
-  for (const int bin : bins) groups[NearestMaps(rays, {bin}, maps).front()].push_back(bin);
+  for (const int bin : bins) {
+    const Eigen::Vector3d& middle = rays.bins[bin].middle;
+    const auto nearest =
+        std::min_element(maps.begin(), maps.end(), [&](const KeptMap& a, const KeptMap& b) {
+          return std::max(0.0, OverhangOf(a.rays, middle)) <
+                 std::max(0.0, OverhangOf(b.rays, middle));
+        });
+    groups[nearest - maps.begin()].push_back(bin);
+  }
   return *std::max_element(groups.begin(), groups.end(), [](const auto& a, const auto& b) {
     return a.size() < b.size();
   });
@@ -88,7 +96,7 @@ PlanKeeper::PlanKeeper(const LightView& view,
       options_(options),
       roomy_(roomy),
       pixels_(view, options.fit.samples),
-      costs_(view, rays, before, options.fit) {}
+      costs_(view, rays, before, options.fit, options.guard_texels) {}
 
 HeldBins PlanKeeper::HeldBy(const KeptMaps& maps) const {
   return FindHeldBins(rays_, pixels_, RayMapsOf(maps), options_.guard_texels);

@@ -4,10 +4,10 @@
 // In:   the maps as they were; one frame's LightView and ServedRays.
 // Out:  maps that hold all that must be held, at little cost: kept, moved by whole texels, or
 // fitted
-//       anew.   docs/mathematics.md 11
+//       anew.   docs/mathematics.md 11, (23)
 //
 // Of all ways to hold what must be held the one is taken that costs least
-// (partition/tracking/plan_costs.h).
+// (partition/tracking/frame_costs.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -20,9 +20,9 @@
 #include "partition/pixel_rays.h"
 #include "partition/plan_options.h"
 #include "partition/served_rays.h"
+#include "partition/tracking/frame_costs.h"
 #include "partition/tracking/held_bins.h"
 #include "partition/tracking/kept_map.h"
-#include "partition/tracking/plan_costs.h"
 
 namespace lightfit {
 
@@ -54,7 +54,7 @@ class PlanKeeper {
   // Fits every map anew to what asks it, with room.
   void MakeRoomy(KeptMaps* maps) const;
 
-  const PlanCosts& costs() const { return costs_; }
+  const FrameCosts& costs() const { return costs_; }
 
  private:
   // Beginning from a map, one of the same size that holds these bins; nothing where there is none.
@@ -74,7 +74,7 @@ class PlanKeeper {
   const PlanOptions& options_;
   const FitOptions& roomy_;
   PixelRays pixels_;
-  PlanCosts costs_;
+  FrameCosts costs_;
 };
 
 }  // namespace lightfit

@@ -7,8 +7,9 @@
 
 #include "base/stop.h"
 #include "optimizer/choose_fit.h"
-#include "optimizer/figures/foretell.h"
 #include "optimizer/light_view.h"
+#include "optimizer/sizing/map_sizes.h"
+#include "partition/evaluate_plan.h"
 #include "partition/tracking/keep_plan.h"
 #include "partition/tracking/lay_plan.h"
 
@@ -59,19 +60,14 @@ class FrameTracker {
       maps.push_back(*kept);
     }
     if (view_->cover.ok() && view_->cover->nothing_to_cover) {
-      TrackedPlan result = ResultOf(LayUnused(*view_, maps), maps, 0.0);
-      result.is_updated = false;
-      return result;
+      return ResultOf(LayUnused(*view_, maps), maps, 0.0);
     }
     if (is_update_) {
       FitOwn();
       if (absl::IsCancelled(own_->status())) return own_->status();
       const absl::StatusOr<bool> flips = Flips();
       if (!flips.ok()) return flips.status();
-      if (*flips) {
-        own_.reset();
-        return NewPlan(ChoiceOf(OtherThan(state_.border)), TrackerAction::kReplaced);
-      }
+      if (*flips) return NewPlan(ChoiceOf(OtherThan(state_.border)), TrackerAction::kReplaced);
     }
     return maps.size() == 1 ? TrackOne(maps.front()) : TrackSeveral(std::move(maps));
   }
@@ -83,9 +79,12 @@ class FrameTracker {
     if (state_.maps.empty() || static_cast<int>(state_.maps.size()) > plan.max_maps) return false;
     int64_t texels = 0;
     for (const TrackedPlanState::Map& map : state_.maps) {
-      texels += int64_t{map.size.width} * map.size.height;
-      if (!plan.each.has_value()) continue;
-      if (map.size.width != plan.each->width || map.size.height != plan.each->height) return false;
+      texels += TexelsOf(map.size);
+      if (plan.each.has_value() &&
+          (map.size.width != plan.each->width || map.size.height != plan.each->height)) {
+        return false;
+      }
+      if (plan.sizes.has_value() && !KeepsRules(map.size, *plan.sizes)) return false;
     }
     return plan.each.has_value() || texels <= plan.texels;
   }
@@ -105,8 +104,9 @@ class FrameTracker {
     if (!own_.has_value()) own_ = FitPlan(surfaces_, light_, tight_);
   }
 
-  // Whether the other border's plan takes over; as BorderByForecast().
-  absl::StatusOr<bool> Flips() const {
+  // Whether the other border's plan takes over, which is then the frame's own; as
+  // BorderByForecast().
+  absl::StatusOr<bool> Flips() {
     const PlanOptions& plan = options_.plan;
     if (plan.fit.border != BorderChoice::kAutomatic || !own_->ok() ||
         !(plan.choose_by_forecast || plan.max_maps == 1) ||
@@ -115,21 +115,20 @@ class FrameTracker {
     }
     PlanOptions other = tight_;
     other.fit.border = ChoiceOf(OtherThan(state_.border));
-    const absl::StatusOr<LightPlan> flipped = FitPlan(surfaces_, light_, other);
+    absl::StatusOr<LightPlan> flipped = FitPlan(surfaces_, light_, other);
     if (absl::IsCancelled(flipped.status())) return flipped.status();
     if (!flipped.ok()) return false;
     const absl::StatusOr<double> share = WrongShareOf(**own_), of_other = WrongShareOf(*flipped);
     if (!share.ok()) return share.status();
     if (!of_other.ok()) return of_other.status();
-    return *of_other < kDarkBorderBelow * *share;
+    if (!(*of_other < kDarkBorderBelow * *share)) return false;
+    own_ = std::move(flipped);
+    return true;
   }
 
   absl::StatusOr<double> WrongShareOf(const LightPlan& plan) const {
     if (plan.wrong_share.has_value()) return *plan.wrong_share;
-    ScratchVector<SizedMatrix> maps;
-    for (const LightMatrix& map : plan.maps) maps.push_back({map.map_from_world, map.map});
-    return ForetellWrongShare(
-        surfaces_.readback, light_, maps, options_.plan.fit.samples, plan.border);
+    return ForetellPlan(surfaces_.readback, light_, PlanOf(plan), options_.plan.fit.samples);
   }
 
   absl::StatusOr<TrackedPlan> FrameOwnPlan() const {
@@ -158,7 +157,7 @@ class FrameTracker {
       result.frames_kept.push_back(IsRedrawn(maps[k].action) ? 0 : state_.maps[k].frames_kept + 1);
     }
     result.best_energy = best;
-    result.is_updated = own_.has_value();
+    result.is_updated = own_.has_value() && own_->ok();
     return result;
   }
 
@@ -181,8 +180,7 @@ class FrameTracker {
       if (!fresh.ok()) return fresh.status();
       maps.push_back(*fresh);
     }
-    absl::StatusOr<LightPlan> plan =
-        maps.size() == 1 ? LayRoomyOne(maps.front()) : LayRoomy(std::move(maps));
+    absl::StatusOr<LightPlan> plan = maps.size() == 1 ? LayRoomyOne(maps.front()) : LayRoomy(maps);
     if (!plan.ok()) return plan.status();
     plan->wrong_share = own.wrong_share;
     TrackedPlan result = NewResult(*std::move(plan), action);
@@ -196,6 +194,11 @@ class FrameTracker {
   }
   bool IsTooMuch(double energy, double best) const {
     return energy > (1.0 + options_.tolerance) * best;
+  }
+  // Whether there is another plan: what holds everything is not thrown away for none.
+  bool CanReplace() {
+    FitOwn();
+    return own_->ok() || absl::IsCancelled(own_->status());
   }
   double DepthRoom() const { return options_.cover_margin_percent / 100.0; }
 
@@ -248,7 +251,7 @@ class FrameTracker {
       if (absl::IsCancelled(fitted.status())) return fitted.status();
       if (fitted.ok()) best = fitted->energy;
     }
-    if (IsTooMuch(plan->energy, best)) return NewPlan(TrackerAction::kReplaced);
+    if (IsTooMuch(plan->energy, best) && CanReplace()) return NewPlan(TrackerAction::kReplaced);
     return ResultOf(*std::move(plan), {*kept}, best);
   }
 
@@ -274,7 +277,9 @@ class FrameTracker {
       if (IsTooMuch(plan->energy, best) && LowersEnergy(keeper, best, &maps)) plan = lay();
     }
     if (absl::Status status = CheckStop(light_); !status.ok()) return status;
-    if (!plan.ok() || IsTooMuch(plan->energy, best)) return NewPlan(TrackerAction::kReplaced);
+    if (!plan.ok() || (IsTooMuch(plan->energy, best) && CanReplace())) {
+      return NewPlan(TrackerAction::kReplaced);
+    }
     return ResultOf(*std::move(plan), maps, best);
   }
 

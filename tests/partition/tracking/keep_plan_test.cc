@@ -92,7 +92,8 @@ TEST(ShiftedToHold, FindsAMoveWhereThereIsOne) {
 }
 
 // math.md (23), sample by sample, with footprints from their Jacobians.
-TEST(PlanCosts, AreWhatTheyAreByDefinition) {
+TEST(FrameCosts, AreWhatTheyAreByDefinition) {
+  constexpr double kGuard = 1.5;
   for (const Metric metric : {Metric::kL1AcrossEdge, Metric::kL1, Metric::kL2}) {
     for (int index = 0; index < 3; ++index) {
       FitOptions fit;
@@ -100,10 +101,11 @@ TEST(PlanCosts, AreWhatTheyAreByDefinition) {
       const PlanCase at(2, index, Border::kLit, fit);
       PlanOptions options = OptionsOf(3);
       options.fit.metric = metric;
+      options.guard_texels = kGuard;
       const auto plan = FitPlan(at.surfaces, at.light, options);
       ASSERT_THAT(plan, IsOk());
       const KeptMaps before = MapsOf(at.view, *plan);
-      const PlanCosts costs(at.view, at.rays, before, at.fit);
+      const FrameCosts costs(at.view, at.rays, before, at.fit, kGuard);
       EXPECT_NEAR(costs.EnergyOf(before), plan->energy, 1e-9 * plan->energy);
 
       // One map redrawn, one moved out of the way of some of its receivers.
@@ -121,8 +123,10 @@ TEST(PlanCosts, AreWhatTheyAreByDefinition) {
         for (size_t k = 0; k < of.size(); ++k) {
           const Eigen::Matrix3d& H = of[k].rays.map_from_ray;
           const Eigen::Vector3d map = H * ray;
-          if (!(map.z() > 0.0 && map.x() >= 0.0 && map.y() >= 0.0 &&
-                map.x() < of[k].size.width * map.z() && map.y() < of[k].size.height * map.z())) {
+          const double low = kGuard * map.z();
+          if (!(map.z() > 0.0 && map.x() >= low && map.y() >= low &&
+                map.x() < of[k].size.width * map.z() - low &&
+                map.y() < of[k].size.height * map.z() - low)) {
             continue;
           }
           const double density = std::abs(H.determinant()) / std::pow(map.z(), 3);

@@ -1,4 +1,4 @@
-// partition/tracking/plan_costs.h
+// partition/tracking/frame_costs.h
 //
 // What maps cost in one frame: their energy, and what of it is redrawn.
 // In:   the frame's LightView and ServedRays, the maps of the frame before; maps.
@@ -20,13 +20,15 @@
 namespace lightfit {
 
 // Of no use once a StopScope says so.
-class PlanCosts {
+class FrameCosts {
  public:
-  // `rays` must outlive the object. Of `fit` counts the metric.
-  PlanCosts(const LightView& view,
-            const ServedRays& rays,
-            const KeptMaps& before,
-            const FitOptions& fit);
+  // `rays` must outlive the object. Of `fit` counts the metric; maps are asked as look-ups ask
+  // them, `guard_texels` from their sides.
+  FrameCosts(const LightView& view,
+             const ServedRays& rays,
+             const KeptMaps& before,
+             const FitOptions& fit,
+             double guard_texels);
 
   // Sum over the boundary samples in the metric, as LightPlan::energy; those of each map.
   double EnergyOf(const KeptMaps& maps) const;
@@ -54,6 +56,7 @@ class PlanCosts {
   ScratchVector<RayMap> before_;
   ScratchVector<RaySample> boundary_;
   bool is_l1_;
+  double guard_texels_;
 };
 
 }  // namespace lightfit
