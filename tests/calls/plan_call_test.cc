@@ -20,6 +20,7 @@ namespace lightfit {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 using testing::Yard;
 
 v1::FitResult Answered(const v1::FitRequest& request) {
@@ -124,6 +125,25 @@ TEST(PlanCall, ALampAmongItsReceiversHasAPlan) {
     EXPECT_EQ(light.status().code(), 0) << light.status().message();
     EXPECT_EQ(light.plan().maps_size(), 2);
   }
+}
+
+// A server that takes no plans of so many does not speak of them.
+TEST(PlanCall, ALampIsNotToldOfMoreMapsThanTheServerTakes) {
+  v1::FitRequest request = RoomRequest();
+  request.mutable_map()->set_width(512);
+  request.mutable_map()->set_height(512);
+  CallContext context;
+  context.limits.max_maps = 1;
+  const absl::StatusOr<v1::FitResult> result = AnswerFit(request, context);
+  ASSERT_THAT(result, testing::IsOk());
+  int num_lamps = 0;
+  for (const v1::LightResult& light : result->lights()) {
+    if (light.status().code() == 0) continue;
+    ++num_lamps;
+    EXPECT_THAT(light.status().message(), HasSubstr("hangs among its receivers"));
+    EXPECT_THAT(light.status().message(), Not(HasSubstr("would do")));
+  }
+  EXPECT_EQ(num_lamps, 1);
 }
 
 TEST(PlanCall, ALightThatCannotBeUsedFailsAlone) {
