@@ -17,6 +17,7 @@
 #include "calls/summary_request.h"
 #include "jobs/allocate_lights.h"
 #include "jobs/fit_summary.h"
+#include "optimizer/sizing/map_sizes.h"
 #include "wire/map_sides_proto.h"
 #include "wire/options_proto.h"
 #include "wire/proto_json.h"
@@ -153,11 +154,11 @@ absl::Status ReadWeights(const v1::AllocateRequest& request, AllocationTask* tas
 absl::StatusOr<v1::Allocation> Answer(const v1::AllocateRequest& request, AllocationTask* task) {
   const absl::StatusOr<ClipConvention> clip = ClipOfRequest(request);
   if (!clip.ok()) return clip.status();
-  const absl::StatusOr<MapSizeRules> rules =
-      MapSidesFromProto(request.rules(), task->options.margin_texels);
-  if (!rules.ok()) return rules.status();
-  task->rules = *rules;
-  if (absl::Status status = ReadWeights(request, task); !status.ok()) return status;
+  task->rules = MapSidesFromProto(request.rules());
+  absl::Status status = ValidateMapSizeRules(task->rules, task->options.margin_texels);
+  if (!status.ok()) return status;
+  status = ReadWeights(request, task);
+  if (!status.ok()) return status;
 
   absl::StatusOr<AllocationReport> report = AllocateLights(*task, [](const std::string&) {});
   if (StopRequested()) return StoppedError();

@@ -175,14 +175,30 @@ TEST(PlanCall, RefusesWhatCannotBeAnswered) {
          plan(r)->clear_texels();
          plan(r)->mutable_each()->set_width(64);
        },
-       "plan_options.each: map = 64x0, want 1 ..."},
+       "plan_options.each = 64x0, want 1 ..."},
       {[&](auto* r) {
          plan(r)->clear_texels();
          plan(r)->mutable_each()->set_width(64);
          plan(r)->mutable_each()->set_height(32);
          plan(r)->set_guard_texels(16.0);
        },
-       "plan_options.each = 64x32: the guard of 16"},
+       "plan_options.each = 64x32: the guard of 16 texels"},
+      {[&](auto* r) {
+         plan(r)->mutable_sizes()->set_min_side(40);
+         plan(r)->mutable_sizes()->set_multiple(1);
+         plan(r)->set_guard_texels(20.0);
+       },
+       "plan_options.sizes.min_side = 40: the guard of 20 texels"},
+      {[&](auto* r) {
+         plan(r)->mutable_sizes()->set_min_side(64);
+         plan(r)->set_guard_texels(20.0);
+         r->mutable_options()->set_margin_texels(12.0);
+       },
+       "plan_options.sizes.min_side = 64: the guard of 20 and the margin of 12 texels on every "
+       "side "
+       "leave nothing"},
+      {[&](auto* r) { plan(r)->mutable_sizes()->set_multiple(-1); },
+       "plan_options.sizes.multiple = -1 texels, want 1 or more"},
       {[](auto* r) { r->mutable_map()->set_width(64); }, "map: does not go with plan_options"},
       {[](auto* r) { r->mutable_options()->set_search(v1::SEARCH_FOCUSED); },
        "options.search = SEARCH_FOCUSED"},
