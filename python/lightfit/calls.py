@@ -12,6 +12,8 @@ from lightfit.inputs import (
     MapSize,
     Options,
     Path_,
+    PlanOptions,
+    plan_message,
 )
 from lightfit.plan_calls import PlanCalls
 from lightfit.request import (
@@ -201,6 +203,7 @@ class Calls(PlanCalls):
         tolerance: Optional[Tolerance] = None,
         weights: Optional[Mapping[str, float]] = None,
         rules: Optional[allocation_pb2.MapSizeRules] = None,
+        plan: Optional[PlanOptions] = None,
         options: Optional[Options] = None,
         clip: Clip = "vulkan",
         facing: Any = None,
@@ -217,6 +220,10 @@ class Calls(PlanCalls):
         weights: by light, > 0, what its energy counts in a budget; 1 for those that are not named.
         rules: of the sides, a lightfit.v1 MapSizeRules message. None: multiples of 64 from 64 to
             16384.
+        plan: several maps for each light, which the budget is divided among, LightResult.plan: as
+            for `fit_plan`, without "texels" and "each", and with "sizes" instead of rules, such as
+            {"max_maps": 4, "sizes": {"powers_of_two": True}}. With a read-back and budget_texels;
+            {} for the defaults. None: one map for each light.
         """
         parts: Optional[ReadbackParts] = None
         if any(part is not None for part in (depth, shadow, camera, lights)):
@@ -225,6 +232,14 @@ class Calls(PlanCalls):
                 depth, shadow, given_camera, lights or (), source, facing, mapped, cover
             )
         request = allocate_request(
-            parts, summaries, budget_texels, tolerance, weights, rules, options, clip
+            parts,
+            summaries,
+            budget_texels,
+            tolerance,
+            weights,
+            rules,
+            None if plan is None else plan_message(plan),
+            options,
+            clip,
         )
         return Allocation.of(self._call("Allocate", request, timeout_s, request_id))
