@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -14,9 +15,11 @@
 #include "calls/request_fields.h"
 #include "calls/request_lights.h"
 #include "calls/request_options.h"
+#include "calls/request_plans.h"
 #include "calls/summary_request.h"
 #include "jobs/allocate_lights.h"
 #include "jobs/fit_summary.h"
+#include "optimizer/sizing/map_sizes.h"
 #include "wire/map_sides_proto.h"
 #include "wire/options_proto.h"
 #include "wire/proto_json.h"
@@ -43,6 +46,11 @@ absl::Status CheckSource(const v1::AllocateRequest& request) {
       return absl::InvalidArgumentError(
           absl::StrCat(field, ": summaries bring theirs, leave it out or leave them out"));
     }
+  }
+  if (request.has_plan_options()) {
+    return absl::InvalidArgumentError(
+        "plan_options: a plan is fitted to the pixels of a read-back, and summaries have none; "
+        "want a read-back in place of them, or leave out plan_options");
   }
   return absl::OkStatus();
 }
@@ -75,16 +83,24 @@ absl::Status ReadGoal(const v1::AllocateRequest& request, AllocationTask* task) 
 absl::Status ReadReadback(const v1::AllocateRequest& request,
                           const ReadbackView& readback,
                           const std::vector<RequestLight>& lights,
+                          const CallLimits& limits,
                           AllocationTask* task) {
   const absl::StatusOr<FitOptions> options = OptionsOfRequest(request.options());
   if (!options.ok()) return options.status();
   task->options = *options;
   task->readback = readback.view();
+  int num_usable = 0;
   for (const RequestLight& light : lights) {
     task->lights.push_back(light.light);
     task->light_status.push_back(light.status);
+    num_usable += light.status.ok() ? 1 : 0;
   }
-  return ValidateReadback(readback.view());
+  const absl::StatusOr<std::optional<PlanOptions>> plans =
+      PlanOptionsOfBudget(request, *options, num_usable, limits);
+  if (!plans.ok()) return plans.status();
+  task->plans = *plans;
+  if (absl::Status status = ValidateReadback(task->readback.value()); !status.ok()) return status;
+  return task->plans.has_value() ? CheckServesPlans(*task->readback) : absl::OkStatus();
 }
 
 // Sums know the root mean square alone, and only of squares.
@@ -153,10 +169,13 @@ absl::Status ReadWeights(const v1::AllocateRequest& request, AllocationTask* tas
 absl::StatusOr<v1::Allocation> Answer(const v1::AllocateRequest& request, AllocationTask* task) {
   const absl::StatusOr<ClipConvention> clip = ClipOfRequest(request);
   if (!clip.ok()) return clip.status();
-  const absl::StatusOr<MapSizeRules> rules =
-      MapSidesFromProto(request.rules(), task->options.margin_texels);
-  if (!rules.ok()) return rules.status();
-  task->rules = *rules;
+  if (task->plans.has_value()) {
+    task->rules = task->plans->sizes.value_or(MapSizeRules());
+  } else {
+    task->rules = MapSidesFromProto(request.rules());
+    absl::Status status = ValidateMapSizeRules(task->rules, task->options.margin_texels);
+    if (!status.ok()) return status;
+  }
   if (absl::Status status = ReadWeights(request, task); !status.ok()) return status;
 
   absl::StatusOr<AllocationReport> report = AllocateLights(*task, [](const std::string&) {});
@@ -194,7 +213,7 @@ absl::StatusOr<v1::Allocation> AnswerAllocate(const v1::AllocateRequest& request
   const absl::StatusOr<ReadbackView> readback =
       ReadbackView::Of(request.readback(), request.lights_size(), context.limits);
   if (!readback.ok()) return readback.status();
-  status = ReadReadback(request, *readback, *lights, &task);
+  status = ReadReadback(request, *readback, *lights, context.limits, &task);
   if (!status.ok()) return status;
   return Answer(request, &task);
 }

@@ -35,7 +35,8 @@ absl::Status CheckPiece(absl::string_view field,
                         absl::string_view bytes,
                         int64_t value_bytes,
                         int64_t arrived,
-                        int64_t want) {
+                        int64_t want,
+                        ValueCount count) {
   const int64_t size = static_cast<int64_t>(bytes.size());
   if (size % value_bytes != 0) {
     return absl::InvalidArgumentError(absl::StrFormat(
@@ -43,24 +44,28 @@ absl::Status CheckPiece(absl::string_view field,
   }
   if (size > want - arrived) {
     return absl::InvalidArgumentError(
-        absl::StrFormat("%s: %d bytes, want %d: width * height values of %d bytes, as in "
-                        "readback.camera and the formats",
+        absl::StrFormat("%s: %d bytes, want %d: %s values of %d bytes, as in %s",
                         field,
                         arrived + size,
                         want,
-                        value_bytes));
+                        count.product,
+                        value_bytes,
+                        count.said_in));
   }
   return absl::OkStatus();
 }
 
-absl::Status CheckArrived(absl::string_view field, int64_t arrived, int64_t want) {
+absl::Status CheckArrived(absl::string_view field,
+                          int64_t arrived,
+                          int64_t want,
+                          ValueCount count) {
   if (arrived == want) return absl::OkStatus();
-  return absl::InvalidArgumentError(
-      absl::StrFormat("%s: %d bytes, want %d: width * height values as in readback.camera and the "
-                      "formats",
-                      field,
-                      arrived,
-                      want));
+  return absl::InvalidArgumentError(absl::StrFormat("%s: %d bytes, want %d: %s values as in %s",
+                                                    field,
+                                                    arrived,
+                                                    want,
+                                                    count.product,
+                                                    count.said_in));
 }
 
 absl::Status BitBuffer::AppendBits(absl::string_view bytes) {

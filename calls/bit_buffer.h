@@ -59,13 +59,24 @@ class BitBuffer {
   std::vector<int64_t> num_plane_bytes_;  // of each light
 };
 
+// How many values an array has, for messages.
+struct ValueCount {
+  const char* product;
+  const char* said_in;
+};
+inline constexpr ValueCount kOnePerPixel = {"width * height", "readback.camera and the formats"};
+
 // `bytes` more of `field`, of which `arrived` are there and `want` are wanted in all.
 // InvalidArgument unless they are whole values that have room.
 absl::Status CheckPiece(absl::string_view field,
                         absl::string_view bytes,
                         int64_t value_bytes,
                         int64_t arrived,
-                        int64_t want);
-absl::Status CheckArrived(absl::string_view field, int64_t arrived, int64_t want);
+                        int64_t want,
+                        ValueCount count = kOnePerPixel);
+absl::Status CheckArrived(absl::string_view field,
+                          int64_t arrived,
+                          int64_t want,
+                          ValueCount count = kOnePerPixel);
 
 }  // namespace lightfit

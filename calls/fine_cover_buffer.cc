@@ -11,6 +11,7 @@ namespace lightfit {
 namespace {
 
 constexpr int64_t kValueBytes = 4;
+constexpr ValueCount kOnePerCell = {"columns * rows", "readback.fine_cover"};
 
 std::string FieldOf(const char* name) { return absl::StrCat("readback.fine_cover.", name); }
 
@@ -61,60 +62,62 @@ absl::StatusOr<FineCoverHeader> FineCoverHeaderFromProto(const v1::Readback& pro
 }
 
 template <typename Word>
-absl::Status FineCoverBuffer::AppendTo(const char* name,
-                                       absl::string_view bytes,
-                                       bool is_announced,
-                                       std::vector<Word>* words) const {
+absl::Status FineCoverBuffer::AppendTo(const Array& array, std::vector<Word>* words) const {
   static_assert(sizeof(Word) == kValueBytes);
-  if (bytes.empty()) return absl::OkStatus();
-  if (!is_announced) {
-    return absl::InvalidArgumentError(absl::StrFormat(
-        "%s: %d bytes, and the header says that there are none", FieldOf(name), bytes.size()));
+  if (array.bytes.empty()) return absl::OkStatus();
+  const std::string field = FieldOf(array.name);
+  if (array.missing != nullptr) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("%s: %d bytes, and the header says that there are none; want %s there, or "
+                        "leave them out",
+                        field,
+                        array.bytes.size(),
+                        FieldOf(array.missing)));
   }
-  absl::Status status = CheckPiece(FieldOf(name),
-                                   bytes,
+  absl::Status status = CheckPiece(field,
+                                   array.bytes,
                                    kValueBytes,
                                    static_cast<int64_t>(words->size()) * kValueBytes,
-                                   header_.num_cells() * kValueBytes);
+                                   header_.num_cells() * kValueBytes,
+                                   kOnePerCell);
   if (!status.ok()) return status;
   words->reserve(header_.num_cells());
   const size_t first = words->size();
-  words->resize(first + bytes.size() / sizeof(Word));
-  std::memcpy(words->data() + first, bytes.data(), bytes.size());
+  words->resize(first + array.bytes.size() / sizeof(Word));
+  std::memcpy(words->data() + first, array.bytes.data(), array.bytes.size());
   return absl::OkStatus();
 }
 
-absl::Status FineCoverBuffer::Append(const v1::FineCover& proto) {
-  const bool has_lit = header_.lit_lights != 0;
-  absl::Status status = AppendTo("nearest", proto.nearest(), !header_.is_absent(), &nearest_);
-  if (status.ok()) {
-    status = AppendTo("furthest", proto.furthest(), header_.has_furthest, &furthest_);
-  }
-  if (status.ok()) {
-    status = AppendTo("shadow_bits", proto.shadow_bits(), !header_.is_absent(), &shadow_bits_);
-  }
-  if (status.ok()) status = AppendTo("lit_bits", proto.lit_bits(), has_lit, &lit_bits_);
+absl::Status FineCoverBuffer::AppendAll(absl::string_view nearest,
+                                        absl::string_view furthest,
+                                        absl::string_view shadow_bits,
+                                        absl::string_view lit_bits) {
+  // What the header must say for an array to come; null where it does.
+  const char* const cells = header_.is_absent() ? "columns and rows" : nullptr;
+  const char* const deep = header_.has_furthest ? nullptr : "with_furthest";
+  const char* const lit = header_.lit_lights != 0 ? nullptr : "lit_lights";
+  absl::Status status = AppendTo({"nearest", nearest, cells}, &nearest_);
+  if (status.ok()) status = AppendTo({"furthest", furthest, deep}, &furthest_);
+  if (status.ok()) status = AppendTo({"shadow_bits", shadow_bits, cells}, &shadow_bits_);
+  if (status.ok()) status = AppendTo({"lit_bits", lit_bits, lit}, &lit_bits_);
   return status;
 }
 
+absl::Status FineCoverBuffer::Append(const v1::FineCover& proto) {
+  return AppendAll(proto.nearest(), proto.furthest(), proto.shadow_bits(), proto.lit_bits());
+}
+
 absl::Status FineCoverBuffer::Append(const v1::PixelChunk& chunk) {
-  const bool has_lit = header_.lit_lights != 0;
-  absl::Status status = AppendTo("nearest", chunk.fine_nearest(), !header_.is_absent(), &nearest_);
-  if (status.ok()) {
-    status = AppendTo("furthest", chunk.fine_furthest(), header_.has_furthest, &furthest_);
-  }
-  if (status.ok()) {
-    status = AppendTo("shadow_bits", chunk.fine_shadow_bits(), !header_.is_absent(), &shadow_bits_);
-  }
-  if (status.ok()) status = AppendTo("lit_bits", chunk.fine_lit_bits(), has_lit, &lit_bits_);
-  return status;
+  return AppendAll(
+      chunk.fine_nearest(), chunk.fine_furthest(), chunk.fine_shadow_bits(), chunk.fine_lit_bits());
 }
 
 absl::Status FineCoverBuffer::CheckComplete() const {
   const auto check = [&](const char* name, size_t num_words, bool is_wanted) {
     return CheckArrived(FieldOf(name),
                         static_cast<int64_t>(num_words) * kValueBytes,
-                        is_wanted ? header_.num_cells() * kValueBytes : 0);
+                        is_wanted ? header_.num_cells() * kValueBytes : 0,
+                        kOnePerCell);
   };
   absl::Status status = check("nearest", nearest_.size(), true);
   if (status.ok()) status = check("furthest", furthest_.size(), header_.has_furthest);

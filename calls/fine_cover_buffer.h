@@ -52,12 +52,19 @@ class FineCoverBuffer {
   FineCover View() const;
 
  private:
+  struct Array {
+    const char* name;  // in readback.fine_cover
+    absl::string_view bytes;
+    const char* missing;  // the field that did not announce it; null: it was announced
+  };
+
   // Values of 4 bytes.
   template <typename Word>
-  absl::Status AppendTo(const char* name,
-                        absl::string_view bytes,
-                        bool is_announced,
-                        std::vector<Word>* words) const;
+  absl::Status AppendTo(const Array& array, std::vector<Word>* words) const;
+  absl::Status AppendAll(absl::string_view nearest,
+                         absl::string_view furthest,
+                         absl::string_view shadow_bits,
+                         absl::string_view lit_bits);
 
   FineCoverHeader header_;
   std::vector<float> nearest_, furthest_;

@@ -23,13 +23,19 @@ LightFit MatrixFitOf(const RequestLight& light,
                      const Surfaces& surfaces,
                      MapSize map,
                      const FitOptions& options,
+                     const CallLimits& limits,
                      bool foretells) {
   LightFit fit;
   fit.light = light.light;
   fit.matrix = FitLight(surfaces, light.light, map, options);
   if (!fit.matrix.ok()) {
-    fit.matrix = WithNumMaps(
-        fit.matrix.status(), surfaces, light.light, map, options, "plan_options.max_maps");
+    fit.matrix = WithNumMaps(fit.matrix.status(),
+                             surfaces,
+                             light.light,
+                             map,
+                             options,
+                             "plan_options.max_maps",
+                             limits.max_maps);
     return fit;
   }
   if (!foretells) return fit;
@@ -109,8 +115,9 @@ absl::StatusOr<v1::FitResult> AnswerFit(const v1::FitRequest& request,
   report.lights = FitRequestLights(
       *lights, readback, *options, [&](const RequestLight& light, const Surfaces& surfaces) {
         const bool foretells = request.foretell_wrong();
-        return plan->has_value() ? PlanFitOf(light, surfaces, **plan, foretells)
-                                 : MatrixFitOf(light, surfaces, *map, *options, foretells);
+        return plan->has_value()
+                   ? PlanFitOf(light, surfaces, **plan, foretells)
+                   : MatrixFitOf(light, surfaces, *map, *options, context.limits, foretells);
       });
   if (StopRequested()) return StoppedError();
   return FinishedResult(report, *lights);

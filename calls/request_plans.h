@@ -14,6 +14,7 @@
 #include "calls/request_lights.h"
 #include "lightfit/v1/options.pb.h"
 #include "lightfit/v1/result.pb.h"
+#include "lightfit/v1/service.pb.h"
 #include "optimizer/readback/readback.h"
 #include "optimizer/readback/surfaces.h"
 #include "partition/plan_options.h"
@@ -44,6 +45,14 @@ absl::StatusOr<std::optional<PlanOptions>> PlanOptionsOfRequest(const Request& r
   if (!options.ok()) return options.status();
   return std::optional<PlanOptions>(*options);
 }
+
+// The same of an AllocateRequest, which divides a budget among the plans of `num_lights` lights;
+// nothing where it wants one map for each. InvalidArgument also for what plans do not go with, and
+// for a budget that is too small for so many.
+absl::StatusOr<std::optional<PlanOptions>> PlanOptionsOfBudget(const v1::AllocateRequest& request,
+                                                               const FitOptions& fit,
+                                                               int num_lights,
+                                                               const CallLimits& limits);
 
 // InvalidArgument for a finer cover, which plans do not look at yet.
 absl::Status CheckServesPlans(const Readback& readback);

@@ -18,7 +18,19 @@ std::string WithFlags(absl::string_view message) {
                               {"options.metric = kL2", "--metric l2"},
                               {"options.max_maps = ", "--maps "},
                               {"options.texels = ", "--texels "},
-                              {"options.guard_texels = ", "--guard "}});
+                              {"options.guard_texels = ", "--guard "},
+                              {": the guard of ", ": the --guard of "},
+                              {"options.each = ", "--map "},
+                              {"options.sizes.multiple = ", "--multiple "},
+                              {"options.sizes.min_side, max_side = ", "--min-side, --max-side "},
+                              {"options.sizes.min_side = ", "--min-side "},
+                              {"options.sizes: no ", "no "},
+                              {"rules.multiple = ", "--multiple "},
+                              {"rules.min_side, max_side = ", "--min-side, --max-side "},
+                              {"rules.min_side = ", "--min-side "},
+                              {"rules: no ", "no "},
+                              {" min_side ... max_side = ", " --min-side ... --max-side "},
+                              {"1 <= min_side <= max_side ", "1 <= --min-side <= --max-side "}});
 }
 
 }  // namespace

@@ -239,6 +239,12 @@ class Seeds {
     weight.set_light(yard_.lights[0].name);
     weight.set_weight(2.0);
     Save("allocate/budget", allocate);
+    v1::AllocateRequest plans = RequestOf<v1::AllocateRequest>(yard_);
+    plans.set_budget_texels(1 << 17);
+    *plans.mutable_plan_options() = SmallPlan();
+    plans.mutable_plan_options()->clear_texels();
+    plans.mutable_plan_options()->mutable_sizes()->set_max_side(256);
+    Save("allocate/plans", plans);
     allocate.clear_weights();
     allocate.mutable_tolerance()->set_kind(v1::Tolerance::KIND_P99);
     allocate.mutable_tolerance()->set_limit_px(2.0);

@@ -50,12 +50,8 @@ double PlanCells::TexelsOf(int num_maps) const {
 
 // Receivers all around, and too few maps for them.
 absl::Status PlanCells::SurroundedByError(int num_maps) const {
-  // Any rays at all have a plan of so many: one for each face of a cube.
-  constexpr int kAlwaysEnough = 6;
-  int enough = num_maps + 1;
-  while (enough < kAlwaysEnough && ClusterCells(fitter_, enough, TexelsOf(enough)).empty()) {
-    ++enough;
-  }
+  const int enough = NumMapsAround(fitter_, num_maps + 1);
+  if (absl::Status status = CheckStop(light_); !status.ok()) return status;
   return absl::FailedPreconditionError(
       absl::StrFormat("light \"%s\": at (%g, %g, %g) it hangs among its receivers, and no %d maps "
                       "have all of them in front; %d would do",

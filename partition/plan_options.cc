@@ -2,11 +2,57 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/string_view.h"
 #include "partition/plan.h"
 
 namespace lightfit {
+
+namespace {
+
+// Whether guard and margin leave something of a map whose shorter side this is, texels.
+bool HasRoomIn(int64_t side, const PlanOptions& options) {
+  const double on_every_side = options.guard_texels + options.fit.margin_texels;
+  return 2.0 * on_every_side < static_cast<double>(side);
+}
+
+absl::Status NoRoomError(absl::string_view size, const PlanOptions& options) {
+  const double guard = options.guard_texels, margin = options.fit.margin_texels;
+  const bool has_both = guard > 0.0 && margin > 0.0;
+  std::string around;
+  if (guard > 0.0) around = absl::StrFormat("guard of %g", guard);
+  if (has_both) absl::StrAppend(&around, " and the ");
+  if (margin > 0.0) absl::StrAppend(&around, absl::StrFormat("margin of %g", margin));
+  return absl::InvalidArgumentError(
+      absl::StrFormat("%s: the %s texels on every side %s nothing of a map; want larger maps, or "
+                      "less around them",
+                      size,
+                      around,
+                      has_both ? "leave" : "leaves"));
+}
+
+absl::Status ValidateEach(const PlanOptions& options) {
+  const MapSize each = *options.each;
+  const std::string size = absl::StrFormat("options.each = %dx%d", each.width, each.height);
+  if (!ValidateMapSize(each).ok()) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("%s, want 1 ... %d texels each way", size, kMaxMapSide));
+  }
+  if (!HasRoomIn(std::min(each.width, each.height), options)) return NoRoomError(size, options);
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+int64_t LeastPlanTexels(const PlanOptions& options) {
+  const int64_t least = LeastPlanTexels(options.max_maps);
+  if (!options.sizes.has_value()) return least;
+  const int64_t side = AllowedSides(*options.sizes).front();
+  return std::max(least, side * side * options.max_maps);
+}
 
 absl::Status ValidatePlanOptions(const PlanOptions& options) {
   if (absl::Status status = ValidateFitOptions(options.fit); !status.ok()) return status;
@@ -19,23 +65,23 @@ absl::Status ValidatePlanOptions(const PlanOptions& options) {
         absl::StrFormat("options.guard_texels = %g, want 0 or more: half the width of the filter",
                         options.guard_texels));
   }
-  const double margin = options.guard_texels + options.fit.margin_texels;
   if (options.each.has_value()) {
     if (options.sizes.has_value()) {
       return absl::InvalidArgumentError(
-          "options.each and options.sizes: one size for all maps, or sizes to choose from; want "
+          "options.each and sizes: one size for all maps, or sizes to choose from; want "
           "one of the two");
     }
-    return ValidateMapSize(*options.each, margin);
+    return ValidateEach(options);
   }
-  int64_t least = LeastPlanTexels(options.max_maps);
   if (options.sizes.has_value()) {
-    if (absl::Status status = ValidateMapSizeRules(*options.sizes, margin); !status.ok()) {
-      return status;
+    const MapSizeRules& sizes = *options.sizes;
+    absl::Status status = ValidateMapSizeRules(sizes, /*margin_texels=*/0.0, "options.sizes");
+    if (!status.ok()) return status;
+    if (!HasRoomIn(AllowedSides(sizes).front(), options)) {
+      return NoRoomError(absl::StrCat("options.sizes.min_side = ", sizes.min_side), options);
     }
-    const int64_t side = AllowedSides(*options.sizes).front();
-    least = std::max(least, side * side * options.max_maps);
   }
+  const int64_t least = LeastPlanTexels(options);
   const int64_t most = int64_t{kMaxMapSide} * kMaxMapSide;
   if (options.texels < least || options.texels > most) {
     return absl::InvalidArgumentError(

@@ -47,6 +47,9 @@ struct PlanOptions {
 // The fewest texels that a plan of so many maps may have.
 inline int64_t LeastPlanTexels(int max_maps) { return int64_t{64} * max_maps; }
 
+// The same of plans with `sizes`, which must be valid.
+int64_t LeastPlanTexels(const PlanOptions& options);
+
 // InvalidArgument names the field as options.FIELD.
 absl::Status ValidatePlanOptions(const PlanOptions& options);
 

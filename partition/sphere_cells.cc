@@ -7,7 +7,9 @@
 
 #include "base/stop.h"
 #include "optimizer/energy/reweighting.h"
+#include "optimizer/readback/cover.h"
 #include "partition/divided_maps.h"
+#include "partition/served_rays.h"
 
 namespace lightfit {
 
@@ -15,7 +17,6 @@ namespace {
 
 constexpr int kNumStarts = 8;
 constexpr int kMaxRounds = 30;
-constexpr int kFacesOfACube = 6;
 
 // The centre that a direction is closest to.
 int ClosestTo(const ScratchVector<Eigen::Vector3d>& centres, const Eigen::Vector3d& direction) {
@@ -107,7 +108,7 @@ Cells ClusterCells(const CellFitter& fitter, int num_cells, double texels) {
     best.Offer(energy, std::move(cells));
   }
   Cells cells = std::move(best).Best();
-  if (cells.empty() && num_cells >= kFacesOfACube && !StopRequested()) {
+  if (cells.empty() && num_cells >= kAlwaysEnoughMaps && !StopRequested()) {
     ScratchVector<Eigen::Vector3d> faces;
     for (int axis = 0; axis < 3; ++axis) {
       faces.push_back(Eigen::Vector3d::Unit(axis));
@@ -116,6 +117,25 @@ Cells ClusterCells(const CellFitter& fitter, int num_cells, double texels) {
     cells = CellsAround(fitter, std::move(faces));
   }
   return cells;
+}
+
+int NumMapsAround(const CellFitter& fitter, int least) {
+  int num_maps = least;
+  // Whether there are cells does not depend on how many texels they have.
+  while (num_maps < kAlwaysEnoughMaps && ClusterCells(fitter, num_maps, kCellTexels).empty()) {
+    ++num_maps;
+  }
+  return num_maps;
+}
+
+absl::StatusOr<int> NumMapsAround(const LightView& view, const FitOptions& fit) {
+  // A view has no cover for another reason too: all receivers in one plane with the light.
+  if (view.cover.status() != SurroundedError(*view.light)) return 0;
+  const absl::StatusOr<ServedRays> rays = FindServedRays(view, fit);
+  if (!rays.ok()) return rays.status();
+  const int num_maps = NumMapsAround(CellFitter(*rays, *view.light, fit), 2);
+  if (absl::Status status = CheckStop(*view.light); !status.ok()) return status;
+  return num_maps;
 }
 
 }  // namespace lightfit

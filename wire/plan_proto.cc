@@ -5,7 +5,6 @@
 #include <string>
 #include <utility>
 
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/strip.h"
@@ -130,29 +129,12 @@ absl::StatusOr<PlanOptions> PlanOptionsFromProto(const v1::PlanOptions& proto,
   } else if (proto.has_texels()) {
     options.texels = proto.texels();
   }
-  if (proto.has_sizes()) {
-    const absl::StatusOr<MapSizeRules> sizes =
-        MapSidesFromProto(proto.sizes(), fit.margin_texels + options.guard_texels);
-    if (!sizes.ok()) return Named("plan_options.sizes", sizes.status());
-    options.sizes = *sizes;
-  }
+  if (proto.has_sizes()) options.sizes = MapSidesFromProto(proto.sizes());
   const absl::Status status = ValidatePlanOptions(options);
   if (status.ok()) return options;
   absl::string_view message = status.message();
-  if (absl::StartsWith(message, "options.margin_texels")) {
-    return absl::InvalidArgumentError(
-        absl::StrFormat("plan_options.each = %dx%d: the guard of %g and the margin of %g texels on "
-                        "every side leave "
-                        "nothing of it",
-                        options.each->width,
-                        options.each->height,
-                        options.guard_texels,
-                        fit.margin_texels));
-  }
-  if (absl::ConsumePrefix(&message, "options.")) {
-    return absl::InvalidArgumentError(absl::StrCat("plan_options.", message));
-  }
-  return Named("plan_options.each", status);
+  absl::ConsumePrefix(&message, "options.");
+  return absl::InvalidArgumentError(absl::StrCat("plan_options.", message));
 }
 
 }  // namespace lightfit

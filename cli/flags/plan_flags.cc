@@ -136,14 +136,6 @@ void CheckPlanFlags(const CLI::App& app, MapSize map, PlanFlags* flags) {
                                "each: give one of the two");
   }
   flags->each = map;
-  if (2.0 * flags->guard_texels < std::min(map.width, map.height)) return;
-  throw CLI::ValidationError("--guard",
-                             absl::StrCat(flags->guard_texels,
-                                          " on every side leaves nothing of maps of --map ",
-                                          map.width,
-                                          "x",
-                                          map.height,
-                                          " texels"));
 }
 
 std::optional<PlanOptions> PlanOptionsOf(const PlanFlags& flags, const FitOptions& fit) {

@@ -1,6 +1,8 @@
 // cli/reports/allocate_report.h
 //
 // What `lightfit allocate` prints: a table and what its numbers mean.
+// In:   AllocationReport, and what it was made from.
+// Out:  text that ends in a newline.
 #pragma once
 
 #include <string>
@@ -10,8 +12,7 @@
 namespace lightfit::cli {
 
 // `source`: what was read, in one line. `image_scale`: pixels of the final image per pixel of the
-// read-back. Fits without statistics, FitOptions::compute_statistics, are those of summaries. Ends
-// in a newline.
+// read-back. Fits without statistics, FitOptions::compute_statistics, are those of summaries.
 std::string AllocationText(const AllocationReport& report,
                            const std::string& source,
                            double image_scale);

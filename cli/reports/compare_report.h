@@ -1,6 +1,8 @@
 // cli/reports/compare_report.h
 //
 // A comparison in words and figures, for the terminal.
+// In:   CompareHeading, and every method on every light (jobs/compare/rows.h).
+// Out:  text that ends in a newline.
 #pragma once
 
 #include <string>

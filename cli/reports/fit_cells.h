@@ -1,6 +1,8 @@
 // cli/reports/fit_cells.h
 //
 // What the tables of `lightfit fit` have in common: cells, and words about borders.
+// In:   judged maps and their figures.
+// Out:  the text of one cell.
 #pragma once
 
 #include <string>

@@ -1,6 +1,8 @@
 // cli/reports/plan_report.h
 //
 // What `lightfit fit --maps` prints of plans: a table of lights, one of their maps, what they mean.
+// In:   PlanOptions, and the comparison of each light (ComparePlan()).
+// Out:  text, and tables as base/table.h lays them out.
 #pragma once
 
 #include <string>

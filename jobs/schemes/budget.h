@@ -1,6 +1,8 @@
 // jobs/schemes/budget.h
 //
 // What all schemes that are held against one another may spend alike.
+// In:   the size of a single map, how many maps there may be, and the filter's width.
+// Out:  SchemeBudget, and the texels of it.
 #pragma once
 
 #include <cstdint>

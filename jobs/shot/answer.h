@@ -1,6 +1,8 @@
 // jobs/shot/answer.h
 //
 // What a light has in one frame of a shot: a matrix, or where several maps were asked for a plan.
+// In:   what trackers and fits give: TrackedMatrix or TrackedPlan.
+// Out:  ShotAnswer, for those who need not know which; ShotLookUps, every answer as a Plan.
 #pragma once
 
 #include <optional>

@@ -18,15 +18,18 @@ int64_t RoundedUp(int64_t value, int64_t multiple) {
 
 }  // namespace
 
-absl::Status ValidateMapSizeRules(const MapSizeRules& rules, double margin_texels) {
+absl::Status ValidateMapSizeRules(const MapSizeRules& rules,
+                                  double margin_texels,
+                                  absl::string_view field) {
   if (rules.multiple < 1) {
     return absl::InvalidArgumentError(
-        absl::StrFormat("rules.multiple = %d texels, want 1 or more", rules.multiple));
+        absl::StrFormat("%s.multiple = %d texels, want 1 or more", field, rules.multiple));
   }
   if (rules.min_side < 1 || rules.max_side > kMaxMapSide || rules.min_side > rules.max_side) {
     return absl::InvalidArgumentError(
-        absl::StrFormat("rules.min_side, max_side = %d, %d texels, want 1 <= min_side <= max_side "
+        absl::StrFormat("%s.min_side, max_side = %d, %d texels, want 1 <= min_side <= max_side "
                         "<= %d",
+                        field,
                         rules.min_side,
                         rules.max_side,
                         kMaxMapSide));
@@ -34,15 +37,17 @@ absl::Status ValidateMapSizeRules(const MapSizeRules& rules, double margin_texel
   const std::vector<int> sides = AllowedSides(rules);
   if (sides.empty()) {
     return absl::InvalidArgumentError(absl::StrFormat(
-        "rules: no %s lies in min_side ... max_side = %d ... %d texels; widen the limits",
+        "%s: no %s lies in min_side ... max_side = %d ... %d texels; widen the limits",
+        field,
         rules.powers_of_two ? "power of two" : absl::StrFormat("multiple of %d", rules.multiple),
         rules.min_side,
         rules.max_side));
   }
   if (sides.front() <= 2.0 * margin_texels) {
     return absl::InvalidArgumentError(
-        absl::StrFormat("rules.min_side = %d texels, want more than twice options.margin_texels "
+        absl::StrFormat("%s.min_side = %d texels, want more than twice options.margin_texels "
                         "= %g",
+                        field,
                         rules.min_side,
                         margin_texels));
   }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "absl/strings/string_view.h"
 #include "geometry/map_size.h"
 
 namespace lightfit {
@@ -22,8 +23,10 @@ struct MapSizeRules {
 };
 
 // InvalidArgument also when no side at all keeps the rules, or `margin_texels` on both sides
-// (FitOptions::margin_texels) leave nothing of the smallest.
-absl::Status ValidateMapSizeRules(const MapSizeRules& rules, double margin_texels = 0.0);
+// (FitOptions::margin_texels) leave nothing of the smallest. `field` is what messages call them.
+absl::Status ValidateMapSizeRules(const MapSizeRules& rules,
+                                  double margin_texels = 0.0,
+                                  absl::string_view field = "rules");
 
 // The sides that keep the rules, ascending. Beyond 64 multiples only some of them, 1/64 apart:
 // nothing is to be gained by smaller steps.

@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "absl/strings/str_format.h"
 #include "geometry/homography.h"
 #include "optimizer/fit_matrix.h"
 #include "optimizer/search/axis_evaluator.h"
@@ -41,6 +42,22 @@ Landing LandingOf(const ScratchVector<Eigen::Vector4d>& corners,
 }
 
 }  // namespace
+
+bool IsSameLight(const Light& a, const Light& b) {
+  return a.kind == b.kind && a.position == b.position && a.direction == b.direction;
+}
+
+absl::Status ValidateUpdates(int update_every_frames, double cover_margin_percent) {
+  if (update_every_frames < 1) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("options.update_every_frames = %d, want at least 1", update_every_frames));
+  }
+  if (!(cover_margin_percent >= 0.0 && cover_margin_percent <= 1000.0)) {
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "options.cover_margin_percent = %g, want 0 ... 1000", cover_margin_percent));
+  }
+  return absl::OkStatus();
+}
 
 std::optional<double> WholeTexelShift(double low, double high, double first, double last) {
   const double middle = 0.5 * (first + last) - 0.5 * (low + high);

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "base/scratch.h"
 #include "geometry/light.h"
@@ -40,6 +41,12 @@ struct TrackedState {
   int64_t frames_kept = 0;
   int64_t frames_since_update = 0;
 };
+
+// Whether a matrix of the one can be kept for the other: names and shadow bits do not count.
+bool IsSameLight(const Light& a, const Light& b);
+
+// Of what trackers of matrices and of plans have in common; InvalidArgument names options.FIELD.
+absl::Status ValidateUpdates(int update_every_frames, double cover_margin_percent);
 
 // What is kept of the frame before, fitted into this one.
 struct Kept {

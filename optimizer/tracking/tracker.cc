@@ -23,10 +23,6 @@ namespace lightfit {
 
 namespace {
 
-bool IsSameLight(const Light& a, const Light& b) {
-  return a.kind == b.kind && a.position == b.position && a.direction == b.direction;
-}
-
 double MedianSquared(const LightMatrix& matrix) {
   return matrix.figures.footprint.median * matrix.figures.footprint.median;
 }
@@ -57,15 +53,7 @@ absl::Status ValidateTrackerOptions(const TrackerOptions& options) {
     return absl::InvalidArgumentError(
         absl::StrFormat("options.replace_below = %g, want at least 0", options.replace_below));
   }
-  if (options.update_every_frames < 1) {
-    return absl::InvalidArgumentError(absl::StrFormat(
-        "options.update_every_frames = %d, want at least 1", options.update_every_frames));
-  }
-  if (!(options.cover_margin_percent >= 0.0 && options.cover_margin_percent <= 1000.0)) {
-    return absl::InvalidArgumentError(absl::StrFormat(
-        "options.cover_margin_percent = %g, want 0 ... 1000", options.cover_margin_percent));
-  }
-  return absl::OkStatus();
+  return ValidateUpdates(options.update_every_frames, options.cover_margin_percent);
 }
 
 bool Tracker::IsUpdate(const TrackedState& state) const {

@@ -8,14 +8,6 @@
 
 namespace lightfit {
 
-namespace {
-
-bool IsSameLight(const Light& a, const Light& b) {
-  return a.kind == b.kind && a.position == b.position && a.direction == b.direction;
-}
-
-}  // namespace
-
 PlanTrackerOptions PlanTrackerOptions::ForStability(double stability) {
   PlanTrackerOptions options;
   options.tolerance = stability;
@@ -30,15 +22,7 @@ absl::Status ValidatePlanTrackerOptions(const PlanTrackerOptions& options) {
     return absl::InvalidArgumentError(
         absl::StrFormat("options.tolerance = %g, want at least 0", options.tolerance));
   }
-  if (options.update_every_frames < 1) {
-    return absl::InvalidArgumentError(absl::StrFormat(
-        "options.update_every_frames = %d, want at least 1", options.update_every_frames));
-  }
-  if (!(options.cover_margin_percent >= 0.0 && options.cover_margin_percent <= 1000.0)) {
-    return absl::InvalidArgumentError(absl::StrFormat(
-        "options.cover_margin_percent = %g, want 0 ... 1000", options.cover_margin_percent));
-  }
-  return absl::OkStatus();
+  return ValidateUpdates(options.update_every_frames, options.cover_margin_percent);
 }
 
 int TrackedPlan::NumRedrawn() const {

@@ -31,7 +31,7 @@ from lightfit.errors import (
     TooLargeError,
     UnavailableError,
 )
-from lightfit.calls import Calls, Track
+from lightfit.calls import Calls
 from lightfit.cover import FineCover
 from lightfit.exr import ExrReadback, read_exr
 from lightfit.inputs import Camera, Light
@@ -48,6 +48,7 @@ from lightfit.result import (
     Samples,
     Status,
 )
+from lightfit.tracks import Track
 from lightfit.v1.allocation_pb2 import MapSizeRules
 from lightfit.v1.matrix_pb2 import ClipConvention
 from lightfit.v1.options_pb2 import FitOptions

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import abc
-from types import TracebackType
-from typing import Any, Iterable, Mapping, Optional, Sequence, Type
+from typing import Any, Iterable, Mapping, Optional, Sequence
 
 from lightfit.cover import FineCover
-from lightfit.errors import error_of
-from lightfit.exr import ExrReadback, read_exr
 from lightfit.inputs import (
     AnyCamera,
     Clip,
@@ -19,11 +15,10 @@ from lightfit.inputs import (
     PlanOptions,
     plan_message,
 )
-from lightfit.pixels import Pixels
+from lightfit.plan_calls import PlanCalls
 from lightfit.request import (
     Candidate,
     ReadbackParts,
-    SizeOrPlan,
     Summary,
     Tolerance,
     allocate_request,
@@ -31,75 +26,14 @@ from lightfit.request import (
     fit_request,
     readback_parts,
     summary_request,
-    track_frame,
     track_setup,
 )
 from lightfit.result import Allocation, EvaluateResult, FitResult
-from lightfit.v1 import allocation_pb2, result_pb2, service_pb2, shot_pb2
+from lightfit.tracks import Track
+from lightfit.v1 import allocation_pb2, shot_pb2
 
 
-class Track(abc.ABC):
-    """A sequence of frames, from `track(...)` or `track_plan(...)`; a context manager. Not for two threads at once."""
-
-    def __init__(self) -> None:
-        #: What the tracker remembers after the latest frame: for `track(..., state=...)`.
-        self.state: Sequence[shot_pb2.TrackedState] = ()
-
-    def update(
-        self,
-        number: int,
-        depth: Any,
-        shadow: Any,
-        camera: AnyCamera,
-        lights: Lights,
-        *,
-        facing: Any = None,
-        mapped: Any = None,
-        cover: Optional[FineCover] = None,
-        source: str = "",
-    ) -> FitResult:
-        """The matrices, or plans, of the next frame.
-
-        number: the caller's, comes back in result.message.shot.number.
-        depth, shadow, camera, lights, facing, mapped, cover: as for `fit`, plans without cover. A light is known by its name,
-            and forgotten when a frame is without it.
-
-        LightResult.action says what became of the matrix of the frame before, PlanMap.action of
-        each map of a plan. Raises LightfitError when the frame cannot be used; the tracker stays as
-        it was, and the next frame may come.
-        """
-        parts = readback_parts(depth, shadow, camera, lights, source, facing, mapped, cover)
-        answer = self._update(track_frame(number, parts), parts.pixels)
-        if answer.status.code != 0:
-            raise error_of(answer.status.code, answer.status.message, self._request_id())
-        self.state = tuple(answer.result.shot.tracker_state)
-        return FitResult.of(answer.result)
-
-    @abc.abstractmethod
-    def close(self) -> None:
-        """Ends the sequence."""
-
-    def __enter__(self) -> "Track":
-        return self
-
-    def __exit__(
-        self,
-        kind: Optional[Type[BaseException]],
-        error: Optional[BaseException],
-        trace: Optional[TracebackType],
-    ) -> None:
-        self.close()
-
-    @abc.abstractmethod
-    def _update(
-        self, frame: service_pb2.TrackFrame, pixels: Pixels
-    ) -> service_pb2.TrackResult: ...
-
-    @abc.abstractmethod
-    def _request_id(self) -> Optional[str]: ...
-
-
-class Calls(abc.ABC):
+class Calls(PlanCalls):
     """The calls. Arguments that all of them share:
 
     timeout_s: seconds until DeadlineError, in all. None: as the Client was told; without a server,
@@ -182,81 +116,6 @@ class Calls(abc.ABC):
             path, lights, map_size, options, clip, foretell_wrong, timeout_s, request_id, exr
         )
 
-    def _fit_exr(
-        self,
-        path: Path_,
-        lights: Lights,
-        size: SizeOrPlan,
-        options: Optional[Options],
-        clip: Clip,
-        foretell_wrong: bool,
-        timeout_s: Optional[float],
-        request_id: Optional[str],
-        exr: Mapping[str, Any],
-    ) -> FitResult:
-        readback = read_exr(path, lights, **exr)
-        parts = readback.parts()
-        request = fit_request(parts, size, options, clip, foretell_wrong)
-        message = self._fit(request, parts.pixels, timeout_s, request_id)
-        _put_light_status(readback, message)
-        return FitResult.of(message)
-
-    def fit_plan(
-        self,
-        depth: Any,
-        shadow: Any,
-        camera: AnyCamera,
-        lights: Lights,
-        plan: Optional[PlanOptions] = None,
-        *,
-        options: Optional[Options] = None,
-        clip: Clip = "vulkan",
-        foretell_wrong: bool = False,
-        facing: Any = None,
-        mapped: Any = None,
-        source: str = "",
-        timeout_s: Optional[float] = None,
-        request_id: Optional[str] = None,
-    ) -> FitResult:
-        """Several maps for each light, of which a receiver asks the densest: LightResult.plan.
-
-        plan: how many maps, and of which sizes, None for the defaults: a dict such as {"max_maps":
-            4, "texels": 1024 * 1024}, of all maps of a light together; {"max_maps": 4, "each":
-            (512, 512)} for maps of one size; or a lightfit.v1 PlanOptions message. "guard_texels":
-            half the width of the filter. "choose_by_forecast": False for "max_maps" maps in any
-            case.
-        options: as for `fit`, but for "search" and "affine".
-        The rest: as for `fit`.
-
-        A lamp among its receivers, which no single map serves, has a plan: its status says how many
-        maps would do where there are too few.
-        """
-        parts = readback_parts(depth, shadow, camera, lights, source, facing, mapped)
-        request = fit_request(parts, plan_message(plan), options, clip, foretell_wrong)
-        return FitResult.of(self._fit(request, parts.pixels, timeout_s, request_id))
-
-    def fit_plan_exr(
-        self,
-        path: Path_,
-        lights: Lights,
-        plan: Optional[PlanOptions] = None,
-        *,
-        options: Optional[Options] = None,
-        clip: Clip = "vulkan",
-        foretell_wrong: bool = False,
-        timeout_s: Optional[float] = None,
-        request_id: Optional[str] = None,
-        **exr: Any,
-    ) -> FitResult:
-        """`fit_plan` of an EXR read-back, as `lightfit fit PATH --lights LIGHTS --maps N` does it.
-
-        exr: as for `fit_exr`.
-        """
-        size = plan_message(plan)
-        return self._fit_exr(
-            path, lights, size, options, clip, foretell_wrong, timeout_s, request_id, exr
-        )
-
     def fit_summary(
         self,
         summaries: Sequence[Summary],
@@ -306,29 +165,6 @@ class Calls(abc.ABC):
         track.state = tuple(state)
         return track
 
-    def track_plan(
-        self,
-        plan: Optional[PlanOptions] = None,
-        *,
-        stability: Optional[float] = None,
-        tracker: Optional[shot_pb2.PlanTrackerSettings] = None,
-        options: Optional[Options] = None,
-        clip: Clip = "vulkan",
-        state: Sequence[shot_pb2.TrackedState] = (),
-        timeout_s: Optional[float] = None,
-        request_id: Optional[str] = None,
-    ) -> Track:
-        """A sequence of frames whose plans are kept while they are good enough, each map by itself.
-
-        plan: as for `fit_plan`.
-        tracker: every choice of the rule as a lightfit.v1 PlanTrackerSettings message.
-        The rest: as for `track`. PlanMap.action and frames_kept say what became of each map.
-        """
-        setup = track_setup(plan_message(plan), stability, tracker, options, clip, state)
-        track = self._track(setup, timeout_s, request_id)
-        track.state = tuple(state)
-        return track
-
     def evaluate(
         self,
         depth: Any,
@@ -367,6 +203,7 @@ class Calls(abc.ABC):
         tolerance: Optional[Tolerance] = None,
         weights: Optional[Mapping[str, float]] = None,
         rules: Optional[allocation_pb2.MapSizeRules] = None,
+        plan: Optional[PlanOptions] = None,
         options: Optional[Options] = None,
         clip: Clip = "vulkan",
         facing: Any = None,
@@ -383,6 +220,10 @@ class Calls(abc.ABC):
         weights: by light, > 0, what its energy counts in a budget; 1 for those that are not named.
         rules: of the sides, a lightfit.v1 MapSizeRules message. None: multiples of 64 from 64 to
             16384.
+        plan: several maps for each light, which the budget is divided among, LightResult.plan: as
+            for `fit_plan`, without "texels" and "each", and with "sizes" instead of rules, such as
+            {"max_maps": 4, "sizes": {"powers_of_two": True}}. With a read-back and budget_texels;
+            {} for the defaults. None: one map for each light.
         """
         parts: Optional[ReadbackParts] = None
         if any(part is not None for part in (depth, shadow, camera, lights)):
@@ -391,43 +232,14 @@ class Calls(abc.ABC):
                 depth, shadow, given_camera, lights or (), source, facing, mapped, cover
             )
         request = allocate_request(
-            parts, summaries, budget_texels, tolerance, weights, rules, options, clip
+            parts,
+            summaries,
+            budget_texels,
+            tolerance,
+            weights,
+            rules,
+            None if plan is None else plan_message(plan),
+            options,
+            clip,
         )
         return Allocation.of(self._call("Allocate", request, timeout_s, request_id))
-
-    @abc.abstractmethod
-    def _fit(
-        self,
-        request: service_pb2.FitRequest,
-        pixels: Pixels,
-        timeout_s: Optional[float],
-        request_id: Optional[str],
-    ) -> result_pb2.FitResult:
-        """The request has no pixels yet."""
-
-    @abc.abstractmethod
-    def _call(
-        self, method: str, request: Any, timeout_s: Optional[float], request_id: Optional[str]
-    ) -> Any:
-        """A call of one request and one result: "FitSummary", "Evaluate" or "Allocate"."""
-
-    @abc.abstractmethod
-    def _track(
-        self,
-        setup: service_pb2.TrackSetup,
-        timeout_s: Optional[float],
-        request_id: Optional[str],
-    ) -> Track: ...
-
-
-def _put_light_status(readback: ExrReadback, result: result_pb2.FitResult) -> None:
-    """Lights whose shadow could not be read went along without any; what is wrong is that."""
-    for light, status in zip(result.lights, readback.light_status):
-        if status.code == 0:
-            continue
-        failed = result_pb2.LightResult(name=light.name, status=status)
-        if light.HasField("map"):
-            failed.map.CopyFrom(light.map)
-        if light.HasField("light"):
-            failed.light.CopyFrom(light.light)
-        light.CopyFrom(failed)

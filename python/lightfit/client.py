@@ -8,12 +8,13 @@ from typing import Any, Callable, Iterator, List, Optional, Tuple, Type
 
 import grpc
 
-from lightfit.calls import Calls, Track
+from lightfit.calls import Calls
 from lightfit.channel import SERVICE, TlsOptions, error_of_call, open_channel, pause
 from lightfit.errors import InvalidArgumentError
 from lightfit.pixels import Pixels
 from lightfit.remote_track import RemoteTrack
 from lightfit.retry import RetryPolicy, call_with_retries
+from lightfit.tracks import Track
 from lightfit.v1 import result_pb2, service_pb2, service_pb2_grpc
 
 # Larger read-backs go in chunks.

@@ -10,7 +10,7 @@ import numpy
 from numpy.typing import NDArray
 
 from lightfit.errors import InvalidArgumentError
-from lightfit.pixels import check_optional_bits, check_pixels, pieces
+from lightfit.pixels import check_depth, check_optional_bits, check_pixels, pieces
 from lightfit.v1 import readback_pb2
 
 
@@ -91,12 +91,11 @@ def _checked(cover: FineCover, num_lights: int) -> CheckedCover:
     nearest, shadow = pixels.as_floats_and_bits()
     furthest = None
     if cover.furthest is not None:
-        shape = numpy.shape(cover.furthest)
-        if shape != nearest.shape:
+        furthest = check_depth("furthest", cover.furthest).astype(numpy.float32, copy=False)
+        if furthest.shape != nearest.shape:
             raise InvalidArgumentError(
-                f"furthest: has shape {shape}, want that of depth, {nearest.shape}"
+                f"furthest: has shape {furthest.shape}, want that of depth, {nearest.shape}"
             )
-        furthest, _ = check_pixels(cover.furthest, cover.shadow, num_lights).as_floats_and_bits()
     lit, lit_lights = None, 0
     if pixels.facing is not None:
         lit_lights = pixels.facing.known_lights(num_lights)

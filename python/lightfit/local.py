@@ -6,9 +6,10 @@ import contextlib
 from typing import Any, Dict, Iterator, Optional, Tuple
 
 from lightfit import _load
-from lightfit.calls import Calls, Track
+from lightfit.calls import Calls
 from lightfit.errors import CancelledError, LightfitError
 from lightfit.pixels import Pixels
+from lightfit.tracks import Track
 from lightfit.v1 import allocation_pb2, readback_pb2, result_pb2, service_pb2
 
 _ANSWERS: Dict[str, Any] = {

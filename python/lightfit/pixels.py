@@ -178,24 +178,31 @@ def check_pixels(
     """depth: (h, w) float32 or float16. shadow: (h, w) uint32 bits, or (num_lights, h, w) planes of
     bool or uint8. facing, mapped: the same, or one (h, w) plane per light with None where it is not
     known; None: of no light. Raises InvalidArgumentError with what was given and what is wanted."""
-    depth = _array(depth, "depth")
-    if depth.dtype.newbyteorder("=") not in _DEPTH_FORMATS:
-        hint = ""
-        if depth.dtype.kind in "fiu":
-            hint = ": depth.astype(numpy.float32)"
-        raise InvalidArgumentError(f"depth: has dtype {depth.dtype}, want float32 or float16{hint}")
-    if depth.ndim != 2 or depth.size == 0:
-        hint = ", one channel of it" if depth.ndim == 3 else ""
-        raise InvalidArgumentError(
-            f"depth: has shape {depth.shape}, want (height, width), top row first{hint}"
-        )
-    depth = _contiguous(depth)
+    depth = check_depth("depth", depth)
     return Pixels(
         depth,
         _check_bits("shadow", shadow, depth.shape, num_lights),
         check_optional_bits("facing", facing, depth.shape, num_lights),
         check_optional_bits("mapped", mapped, depth.shape, num_lights),
     )
+
+
+def check_depth(field: str, depth: Any) -> NDArray[Any]:
+    """(h, w) float32 or float16, contiguous and little-endian."""
+    depth = _array(depth, field)
+    if depth.dtype.newbyteorder("=") not in _DEPTH_FORMATS:
+        hint = ""
+        if depth.dtype.kind in "fiu":
+            hint = f": {field}.astype(numpy.float32)"
+        raise InvalidArgumentError(
+            f"{field}: has dtype {depth.dtype}, want float32 or float16{hint}"
+        )
+    if depth.ndim != 2 or depth.size == 0:
+        hint = ", one channel of it" if depth.ndim == 3 else ""
+        raise InvalidArgumentError(
+            f"{field}: has shape {depth.shape}, want (height, width), top row first{hint}"
+        )
+    return _contiguous(depth)
 
 
 def _check_bits(field: str, values: Any, size: Tuple[int, ...], num_lights: int) -> Bits:

@@ -8,11 +8,11 @@ from typing import Any, Callable, Iterator, Optional
 
 import grpc
 
-from lightfit.calls import Track
 from lightfit.channel import error_of_call
 from lightfit.errors import CancelledError, DeadlineError, UnavailableError
 from lightfit.pixels import Pixels
 from lightfit.retry import RetryPolicy, call_with_retries
+from lightfit.tracks import Track
 from lightfit.v1 import service_pb2
 
 # Larger frames follow their header in chunks.

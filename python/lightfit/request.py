@@ -187,6 +187,7 @@ def allocate_request(
     tolerance: Optional[Tolerance],
     weights: Optional[Mapping[str, float]],
     rules: Optional[allocation_pb2.MapSizeRules],
+    plan: Optional[result_pb2.PlanOptions],
     options: Optional[Options],
     clip: Clip,
 ) -> service_pb2.AllocateRequest:
@@ -199,6 +200,7 @@ def allocate_request(
         options=options_message(options),
         clip=clip_message(clip),
         rules=rules,
+        plan_options=plan,
         tolerance=tolerance.message if tolerance is not None else None,
         weights=[
             service_pb2.LightWeight(light=light, weight=weight)

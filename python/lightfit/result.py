@@ -4,7 +4,7 @@ with all fields of the schema."""
 from __future__ import annotations
 
 import dataclasses
-from typing import Any, Dict, List, Optional, Tuple
+from typing import Dict, List, Optional, Tuple
 
 from lightfit.errors import Code, error_of
 from lightfit.messages import (
@@ -109,7 +109,8 @@ class LightResult:
         status = status_of(message.status)
         ok = status.ok
         shot = message.shot if message.HasField("shot") else None
-        tracked = shot is not None and not shot.HasField("plan")
+        shot_plan = shot.plan if shot is not None and shot.HasField("plan") else None
+        tracked = shot is not None and shot_plan is None
         return cls(
             name=message.name,
             status=status,
@@ -128,7 +129,7 @@ class LightResult:
             if tracked
             else None,
             frames_kept=message.shot.frames_kept if tracked else None,
-            plan=Plan.of(message.plan, shot.plan if shot is not None else None)
+            plan=Plan.of(message.plan, shot_plan)
             if message.HasField("plan")
             else None,
             message=message,

@@ -38,6 +38,33 @@ TEST(CommandLine, AllocateIsTheSame) {
   EXPECT_EQ(JsonWithoutSource(*result), JsonWithoutSource(ReadAllocation(path)));
 }
 
+// With any sizes, and with those that are allowed.
+TEST(CommandLine, AllocateOfPlansIsTheSame) {
+  const auto compare = [](const Arguments& more, const auto& fill) {
+    SCOPED_TRACE(more.back());
+    const TemporaryFolder folder;
+    const std::string path = folder.Path("maps.json");
+    const Arguments budget = {"--budget", "360000", "--quiet", "--json", path};
+    ASSERT_EQ(AllocateYard(Joined(budget, more)).exit_code, 0);
+    auto request = testing::RequestOf<v1::AllocateRequest>(Yard().file.View(), Yard().lights);
+    request.set_budget_texels(360000);
+    fill(request.mutable_plan_options());
+    const auto result = AnswerAllocate(request, CallContext());
+    ASSERT_THAT(result, testing::IsOk());
+    EXPECT_GT(result->lights(0).plan().maps_size(), 1);
+    EXPECT_EQ(JsonWithoutSource(*result), JsonWithoutSource(ReadAllocation(path)));
+  };
+  compare({"--maps", "3", "--guard", "1.5"}, [](v1::PlanOptions* options) {
+    options->set_max_maps(3);
+    options->set_guard_texels(1.5);
+  });
+  compare({"--maps", "2", "--power-of-two", "--min-side", "32"}, [](v1::PlanOptions* options) {
+    options->set_max_maps(2);
+    options->mutable_sizes()->set_powers_of_two(true);
+    options->mutable_sizes()->set_min_side(32);
+  });
+}
+
 TEST(CommandLine, AllocateOfSummariesIsTheSame) {
   const TemporaryFolder folder;
   const std::string summary = YardSummary(folder, "yard.summary", {"--metric", "l2"});

@@ -127,15 +127,18 @@ TEST(FineCoverBuffer, RefusesWhatDoesNotBelong) {
       {[&](auto* r) { cover(r)->mutable_nearest()->pop_back(); },
        "readback.fine_cover.nearest: 19199 bytes, want whole values of 4 bytes"},
       {[&](auto* r) { cover(r)->clear_nearest(); },
-       "readback.fine_cover.nearest: 0 bytes, want 19200"},
+       "readback.fine_cover.nearest: 0 bytes, want 19200: columns * rows values as in "
+       "readback.fine_cover"},
       {[&](auto* r) { cover(r)->mutable_shadow_bits()->append("1234"); },
-       "readback.fine_cover.shadow_bits: 19204 bytes, want 19200"},
+       "readback.fine_cover.shadow_bits: 19204 bytes, want 19200: columns * rows values of 4 "
+       "bytes"},
       {[&](auto* r) { cover(r)->mutable_furthest()->resize(400); },
        "readback.fine_cover.furthest: 400 bytes, want 19200"},
       {[&](auto* r) { cover(r)->clear_lit_bits(); },
        "readback.fine_cover.lit_bits: 0 bytes, want 19200"},
       {[&](auto* r) { cover(r)->set_lit_lights(0); },
-       "readback.fine_cover.lit_bits: 19200 bytes, and the header says that there are none"},
+       "readback.fine_cover.lit_bits: 19200 bytes, and the header says that there are none; want "
+       "readback.fine_cover.lit_lights there"},
       {[&](auto* r) { cover(r)->set_lit_lights(4); },
        "readback.fine_cover.lit_lights = 0x4: there are 2 lights"},
   };
@@ -149,7 +152,15 @@ TEST(FineCoverBuffer, RefusesWhatDoesNotBelong) {
   v1::PixelChunk chunk;
   chunk.set_fine_nearest("1234");
   EXPECT_THAT(std::string(buffer.Append(chunk).message()),
-              HasSubstr("the header says that there are none"));
+              HasSubstr("want readback.fine_cover.columns and rows there, or leave them out"));
+  // Depths of the furthest that the header of a stream did not announce.
+  v1::Readback unannounced = floor.Message();
+  ClearPixels(&unannounced);
+  PixelBuffer nearest_only(*HeaderOf(unannounced));
+  chunk.clear_fine_nearest();
+  chunk.set_fine_furthest("1234");
+  EXPECT_THAT(std::string(nearest_only.Append(chunk).message()),
+              HasSubstr("want readback.fine_cover.with_furthest there"));
 }
 
 }  // namespace

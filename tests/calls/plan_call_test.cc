@@ -20,6 +20,7 @@ namespace lightfit {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 using testing::Yard;
 
 v1::FitResult Answered(const v1::FitRequest& request) {
@@ -126,6 +127,25 @@ TEST(PlanCall, ALampAmongItsReceiversHasAPlan) {
   }
 }
 
+// A server that takes no plans of so many does not speak of them.
+TEST(PlanCall, ALampIsNotToldOfMoreMapsThanTheServerTakes) {
+  v1::FitRequest request = RoomRequest();
+  request.mutable_map()->set_width(512);
+  request.mutable_map()->set_height(512);
+  CallContext context;
+  context.limits.max_maps = 1;
+  const absl::StatusOr<v1::FitResult> result = AnswerFit(request, context);
+  ASSERT_THAT(result, testing::IsOk());
+  int num_lamps = 0;
+  for (const v1::LightResult& light : result->lights()) {
+    if (light.status().code() == 0) continue;
+    ++num_lamps;
+    EXPECT_THAT(light.status().message(), HasSubstr("hangs among its receivers"));
+    EXPECT_THAT(light.status().message(), Not(HasSubstr("would do")));
+  }
+  EXPECT_EQ(num_lamps, 1);
+}
+
 TEST(PlanCall, ALightThatCannotBeUsedFailsAlone) {
   v1::FitRequest request = FloorRequest();
   const v1::FitResult both = Answered(request);
@@ -155,14 +175,30 @@ TEST(PlanCall, RefusesWhatCannotBeAnswered) {
          plan(r)->clear_texels();
          plan(r)->mutable_each()->set_width(64);
        },
-       "plan_options.each: map = 64x0, want 1 ..."},
+       "plan_options.each = 64x0, want 1 ..."},
       {[&](auto* r) {
          plan(r)->clear_texels();
          plan(r)->mutable_each()->set_width(64);
          plan(r)->mutable_each()->set_height(32);
          plan(r)->set_guard_texels(16.0);
        },
-       "plan_options.each = 64x32: the guard of 16"},
+       "plan_options.each = 64x32: the guard of 16 texels"},
+      {[&](auto* r) {
+         plan(r)->mutable_sizes()->set_min_side(40);
+         plan(r)->mutable_sizes()->set_multiple(1);
+         plan(r)->set_guard_texels(20.0);
+       },
+       "plan_options.sizes.min_side = 40: the guard of 20 texels"},
+      {[&](auto* r) {
+         plan(r)->mutable_sizes()->set_min_side(64);
+         plan(r)->set_guard_texels(20.0);
+         r->mutable_options()->set_margin_texels(12.0);
+       },
+       "plan_options.sizes.min_side = 64: the guard of 20 and the margin of 12 texels on every "
+       "side "
+       "leave nothing"},
+      {[&](auto* r) { plan(r)->mutable_sizes()->set_multiple(-1); },
+       "plan_options.sizes.multiple = -1 texels, want 1 or more"},
       {[](auto* r) { r->mutable_map()->set_width(64); }, "map: does not go with plan_options"},
       {[](auto* r) { r->mutable_options()->set_search(v1::SEARCH_FOCUSED); },
        "options.search = SEARCH_FOCUSED"},

@@ -202,7 +202,12 @@ TEST_F(ComparePlansTest, OptionsThatDoNotGoTogetherAreRefused) {
   expect_usage({"--texels", "100x100"}, "--maps 2 or more");
   expect_usage({"--guard", "2"}, "--maps 2 or more");
   expect_usage({"--maps", "4", "--texels", "9999", "--map", "50x50"}, "give one of the two");
-  expect_usage({"--maps", "4", "--map", "8x8", "--guard", "4"}, "leaves nothing");
+  expect_usage({"--maps", "4", "--map", "8x8", "--guard", "4"},
+               "--map 8x8: the --guard of 4 texels on every side leaves nothing");
+  expect_usage({"--maps", "4", "--min-side", "64", "--guard", "40"},
+               "--min-side 64: the --guard of 40 texels");
+  expect_usage({"--maps", "4", "--min-side", "65", "--max-side", "70"},
+               "no multiple of 64 lies in --min-side ... --max-side 65 ... 70 texels");
   expect_usage({"--maps", "4", "--search", "line"}, "does not go with --search");
   expect_usage({"--maps", "4", "--texels", "10"}, "--texels 10, want 256");
   expect_usage({"--maps", "4", "--matrix", "ZP4=x.json"}, "is a method already");

@@ -248,7 +248,8 @@ TEST(FitPlan, RefusesWhatDoesNotGoTogether) {
   refused({"--maps", "2", "--texels", "127"}, {"--texels 127, want 128 "});
   refused({"--maps", "2", "--texels", "many"}, {"--texels", "many"});
   refused({"--maps", "2", "--guard", "-1"}, {"--guard"});
-  refused({"--maps", "2", "--map", "64x32", "--guard", "16"}, {"--guard", "64x32"});
+  refused({"--maps", "2", "--map", "64x32", "--guard", "16"},
+          {"--map 64x32: the --guard of 16 texels"});
   refused({"--maps", "2", "--search", "line"}, {"--maps", "--search"});
   refused({"--maps", "2", "--affine", "skewed"}, {"--maps", "--affine"});
   refused({"--maps", "2", "--as-published"}, {"--maps", "--as-published"});

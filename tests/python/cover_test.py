@@ -156,6 +156,12 @@ def test_what_is_wrong_with_a_cover_is_said() -> None:
     refused(fine[0], "cover: is a ndarray, want lightfit.FineCover")
     refused(lightfit.FineCover(fine[0], shadow), "cover: shadow: has shape")
     refused(lightfit.FineCover(fine[0], fine[1], furthest=depth), "cover: furthest: has shape")
+    doubles = fine[0].astype(numpy.float64)
+    refused(
+        lightfit.FineCover(fine[0], fine[1], furthest=doubles),
+        "cover: furthest: has dtype float64, want float32 or float16: furthest.astype(",
+    )
+    refused(lightfit.FineCover(doubles, fine[1]), "cover: depth: has dtype float64")
     refused(lightfit.FineCover(fine[0], fine[1], fine[1], lit=fine[1]), "not both")
 
 

@@ -10,7 +10,7 @@ from google.protobuf import json_format
 
 import lightfit
 from conftest import ROOM, YARD, without_yardsticks
-from lightfit.v1 import result_pb2, shot_pb2
+from lightfit.v1 import allocation_pb2, result_pb2, shot_pb2
 from readbacks import large_readback
 from serving import REPOSITORY, Server
 
@@ -138,6 +138,31 @@ def test_a_server_gives_the_plans_of_this_process(client: Any, arguments: Any) -
     large = large_readback(1500, 1001)  # is streamed
     want = lightfit.fit_plan(*large, {"max_maps": 2})
     assert want.ok and client.fit_plan(*large, {"max_maps": 2}).message == want.message
+
+
+def test_a_budget_is_divided_among_plans_as_by_the_program(
+    tmp_path: pathlib.Path, run_lightfit: Any, yard: lightfit.ExrReadback, client: Any,
+    arguments: Any,
+) -> None:
+    path = tmp_path / "allocation.json"
+    run_lightfit(
+        "allocate", YARD / "0001.exr", "--lights", YARD / "scene.json", "--budget", "360000",
+        "--maps", 3, "--guard", 1.5, "--power-of-two", "--json", path, "--quiet",
+    )
+    want = json_format.Parse(path.read_text(), allocation_pb2.Allocation())
+    plan = {"max_maps": 3, "guard_texels": 1.5, "sizes": {"powers_of_two": True}}
+    for calls in (lightfit, client):
+        result = calls.allocate(
+            *arguments, budget_texels=360000, plan=plan, source=yard.path
+        )
+        assert result.ok and result.message == want
+    plans = [light.plan for light in result.lights]
+    assert sum(part.texels for part in plans) == result.texels <= 360000
+    assert all(side & (side - 1) == 0 for part in plans[0].maps for side in part.map_size)
+    defaults = lightfit.allocate(*arguments, budget_texels=360000, plan={})
+    assert defaults.message.plan_options.max_maps == 4
+    with pytest.raises(lightfit.InvalidArgumentError, match="plan_options: plans divide a budget"):
+        lightfit.allocate(*arguments, tolerance=lightfit.Tolerance(2.0), plan=plan)
 
 
 def test_each_map_of_a_tracked_plan_is_kept_by_itself(client: Any, arguments: Any) -> None:

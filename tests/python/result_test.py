@@ -54,6 +54,22 @@ def test_a_light_that_failed_has_its_status_alone() -> None:
         result.raise_for_status()
 
 
+# As a frame without a frame before it has: a crawl, or nothing, and no word on the plan.
+def test_a_plan_keeps_its_maps_where_the_shot_says_nothing_of_them() -> None:
+    result = message()
+    sun = result.lights[0]
+    sun.plan.maps.add(index=0, energy=1.5)
+    sun.plan.maps.add(index=1, energy=0.5)
+    sun.shot.crawl.SetInParent()
+    plan = lightfit.FitResult.of(result)["sun"].plan
+    assert plan is not None and [part.energy for part in plan.maps] == [1.5, 0.5]
+    assert plan.is_new is None and plan.maps[0].action is None
+    sun.shot.plan.maps.add(frames_kept=3)
+    sun.shot.plan.maps.add(frames_kept=0)
+    plan = lightfit.FitResult.of(result)["sun"].plan
+    assert plan is not None and [part.frames_kept for part in plan.maps] == [3, 0]
+
+
 def test_a_light_is_found_by_its_name() -> None:
     with pytest.raises(KeyError, match="rim"):
         lightfit.FitResult.of(message())["rim"]

@@ -117,6 +117,18 @@ TEST(Service, PlansOfMoreMapsThanTheServerTakesAreRefused) {
   stream->Write(message);
   stream->WritesDone();
   ExpectRefused(stream->Finish(), grpc::StatusCode::RESOURCE_EXHAUSTED, words);
+
+  auto allocate = testing::RequestOf<v1::AllocateRequest>(Yard().file.View(), Yard().lights);
+  allocate.set_budget_texels(360000);
+  *allocate.mutable_plan_options() = request.plan_options();
+  grpc::ClientContext refused, taken;
+  v1::Allocation allocation;
+  ExpectRefused(server.stub().Allocate(&refused, allocate, &allocation),
+                grpc::StatusCode::RESOURCE_EXHAUSTED,
+                words);
+  allocate.mutable_plan_options()->set_max_maps(2);
+  ExpectOk(server.stub().Allocate(&taken, allocate, &allocation));
+  EXPECT_EQ(allocation.lights(0).plan().maps_size(), 2);
 }
 
 TEST(Service, FacingPlanesComeWholeOrInChunks) {
