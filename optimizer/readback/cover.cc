@@ -254,9 +254,13 @@ absl::StatusOr<RayCover> CoverReceivers(
     cover.hull = ConvexHull(points);
   }
   if (absl::Status status = CheckStop(light); !status.ok()) return status;
-  const std::optional<Eigen::Matrix3d> normalized = NormalizeRays(frame_from_ray, &cover.hull);
+  std::optional<Eigen::Matrix3d> normalized = NormalizeRays(frame_from_ray, &cover.hull);
+  if (!normalized.has_value() && !covers_all) {
+    // The centre of a single pixel to cover, or of a row of them: what is around them has area.
+    cover.hull = HullOfSurroundings(covered, frame_from_ray * ray_from_screen);
+    if (!cover.hull.empty()) normalized = NormalizeRays(frame_from_ray, &cover.hull);
+  }
   if (!normalized.has_value()) {
-    // A single pixel to cover, or a row of them, has no area, which is as good as none.
     if (covers_all) return FlatError(light);
     return CoverReceivers(surfaces, light, Cover::kReceivers, border);
   }

@@ -23,7 +23,7 @@ enum class Cover {
   kReceivers,  // every surface in view: nothing that comes to be shadowed is outside
   kShadowed    // every surface in view that the border would answer wrongly: with a lit border the
              // shadowed ones, as what is lit may lie outside the map, where a look-up finds light;
-             // with a dark border the lit ones. Every surface where those have no area
+             // with a dark border the lit ones. Every surface where there are none
 };
 
 struct RayCover {
@@ -60,8 +60,8 @@ struct RayCover {
 // that have any such surface, at its nearest and furthest depth; left out where a point light has
 // them all around.
 //
-// Without any such surface, or with all of them in one plane with the light (one pixel, a row of
-// them), kShadowed covers every receiver.
+// Of surfaces that are in one plane with the light (one pixel, two of them, a row) kShadowed covers
+// what is a pixel around them. Without any, or with all seen edge-on, it covers every receiver.
 //
 // FailedPrecondition when the receivers to cover surround a point light, or all lie in one plane
 // with the light; CancelledError once a StopScope says so.

@@ -93,4 +93,22 @@ Polygon ExactHull(const CoveredSurfaces& covered, const Matrix34d& frame_from_sc
   return HullBuilder(covered, frame_from_screen).Build();
 }
 
+Polygon HullOfSurroundings(const CoveredSurfaces& covered, const Matrix34d& frame_from_screen) {
+  ScratchVector<Eigen::Vector2d> corners;
+  bool all_in_front = true;
+  ForEachTile(covered.tiles.grids[0], [&](const DepthTile& tile) {
+    covered.ForEach(tile, [&](const Eigen::Vector4d& centre) {
+      for (const double dx : {-1.0, 1.0}) {
+        for (const double dy : {-1.0, 1.0}) {
+          const Eigen::Vector3d ray =
+              frame_from_screen * (centre + Eigen::Vector4d(dx, dy, 0.0, 0.0));
+          all_in_front = all_in_front && ray.z() > 0.0;
+          if (all_in_front) corners.emplace_back(ray.hnormalized());
+        }
+      }
+    });
+  });
+  return all_in_front ? ConvexHull(corners) : Polygon();
+}
+
 }  // namespace lightfit

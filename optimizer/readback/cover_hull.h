@@ -15,4 +15,8 @@ namespace lightfit {
 // a StopScope says so.
 Polygon ExactHull(const CoveredSurfaces& covered, const Matrix34d& frame_from_screen);
 
+// The same with a pixel all around each centre, at its affine depth: an edge lies anywhere between
+// a centre and the next. For few, whose centres have no area. Empty where any has z <= 0.
+Polygon HullOfSurroundings(const CoveredSurfaces& covered, const Matrix34d& frame_from_screen);
+
 }  // namespace lightfit

@@ -136,23 +136,61 @@ void ExpectSameCover(const RayCover& a, const RayCover& b) {
 const Light kSun = Light::Directional("sun", {0.3, 0.2, -1.0}, 2);
 const Light kLamp = Light::Point("lamp", {0.5, -0.5, 2.0}, 2);
 
-// Shadows without an area have no map of their own: none at all, of another light, one pixel, a
-// row. They are covered with everything else.
-TEST(CoverShadowed, WithoutAnAreaOfShadowEveryReceiverIsCovered) {
-  std::vector<PlaneReadback> readbacks(4, FloorReadback());
+// None at all, or of another light.
+TEST(CoverShadowed, WithoutShadowEveryReceiverIsCovered) {
+  std::vector<PlaneReadback> readbacks(2, FloorReadback());
   readbacks[1].Cast(0, [](int x, int) { return x > 20; });
-  readbacks[2].Cast(2, [](int x, int y) { return x == 7 && y == 9; });
-  readbacks[3].Cast(2, [](int x, int y) { return x < 30 && y == 9; });
-  for (size_t i = 0; i < readbacks.size(); ++i) {
-    SCOPED_TRACE(i);
-    const Surfaces surfaces = *FindSurfaces(readbacks[i].View(), 1u << 2, {});
+  for (const PlaneReadback& readback : readbacks) {
+    const Surfaces surfaces = *FindSurfaces(readback.View(), 1u << 2, {});
     for (const Light& light : {kSun, kLamp}) {
       const auto all = CoverReceivers(surfaces, light, Cover::kReceivers);
       const auto shadowed = CoverReceivers(surfaces, light, Cover::kShadowed);
       ASSERT_THAT(all, IsOk());
       ASSERT_THAT(shadowed, IsOk());
-      // A row of floats is straight to seven digits only.
-      if (i < 3) ExpectSameCover(*shadowed, *all);
+      EXPECT_TRUE(shadowed->nothing_to_cover);
+      ExpectSameCover(*shadowed, *all);
+    }
+  }
+}
+
+// The centres of one pixel, of two, of a row have no area; the edges of their shadow lie within a
+// pixel of them.
+TEST(CoverShadowed, OfShadowsWithoutAnAreaTheHullReachesAPixelFurther) {
+  constexpr double kRounding = 1e-9;
+  const std::vector<std::vector<Eigen::Vector2i>> shadows = {
+      {{7, 9}}, {{7, 9}, {12, 20}}, {{0, 9}, {1, 9}, {2, 9}, {3, 9}}};
+  for (const std::vector<Eigen::Vector2i>& pixels : shadows) {
+    SCOPED_TRACE(pixels.size());
+    PlaneReadback readback = FloorReadback();
+    readback.Cast(2, [&pixels](int x, int y) {
+      return std::find(pixels.begin(), pixels.end(), Eigen::Vector2i(x, y)) != pixels.end();
+    });
+    const Surfaces surfaces = *FindSurfaces(readback.View(), 1u << 2, {});
+    for (const Light& light : {kSun, kLamp}) {
+      const auto cover = CoverReceivers(surfaces, light, Cover::kShadowed);
+      ASSERT_THAT(cover, IsOk());
+      EXPECT_FALSE(cover->nothing_to_cover);
+      std::vector<Eigen::Vector2d> corners;
+      for (const Eigen::Vector2i& pixel : pixels) {
+        const double d = surfaces.affine_depth.At(
+            pixel.x(), pixel.y(), readback.depth[readback.Index(pixel.x(), pixel.y())]);
+        for (const double dx : {-1.0, 1.0}) {
+          for (const double dy : {-1.0, 1.0}) {
+            const Eigen::Vector4d screen(pixel.x() + 0.5 + dx, pixel.y() + 0.5 + dy, d, 1.0);
+            corners.emplace_back((cover->normalized_from_ray * RayFromWorld(light) *
+                                  surfaces.world_from_screen * screen)
+                                     .hnormalized());
+          }
+        }
+      }
+      const Polygon expected = ConvexHull(corners);
+      EXPECT_NEAR(Area(cover->hull), Area(expected), kRounding);
+      for (const Eigen::Vector2d& vertex : cover->hull) {
+        EXPECT_TRUE(
+            std::any_of(corners.begin(), corners.end(), [&vertex](const Eigen::Vector2d& corner) {
+              return (vertex - corner).norm() < kRounding;
+            }));
+      }
     }
   }
 }
