@@ -82,8 +82,7 @@ TrackedFits PlanTrackers::Update(const Readback& readback,
     }
     *shot.mutable_plan() = ShotPlanToProto(*tracked);
     const Figures figures = FiguresOf(*tracked, *surfaces, light.light, options_.plan);
-    fit.matrix = tracked->plan.maps[0];  // the answer where it is the only one
-    fit.plan = PlanFit{std::move(tracked->plan), figures, options_.plan.guard_texels};
+    SetPlan(std::move(tracked->plan), figures, options_.plan.guard_texels, &fit);
   }
   trackers_ = std::move(trackers);
   given_.clear();

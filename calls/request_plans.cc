@@ -3,9 +3,10 @@
 #include <utility>
 
 #include "absl/strings/str_format.h"
-#include "geometry/map_size.h"
+#include "absl/strings/str_replace.h"
 #include "jobs/matrix_judge.h"
 #include "partition/fit_plan.h"
+#include "partition/fit_plans.h"
 #include "wire/plan_proto.h"
 
 namespace lightfit {
@@ -70,21 +71,15 @@ absl::StatusOr<std::optional<PlanOptions>> PlanOptionsOfBudget(const v1::Allocat
                         given.each().width(),
                         given.each().height()));
   }
-  // A light's share is what its plan may have, and is looked at below.
-  constexpr int64_t kMostTexels = int64_t{kMaxMapSide} * kMaxMapSide;
-  given.set_texels(kMostTexels);
+  // A light's share is what its plan may have.
+  given.set_texels(kMostPlanTexels);
   absl::StatusOr<PlanOptions> options = PlanOptionsOf(given, request.options(), fit, limits);
   if (!options.ok()) return options.status();
   options->texels = budget;
-  const int64_t least = LeastPlanTexels(*options);
-  if (num_lights > 0 && (budget / num_lights < least || budget / num_lights > kMostTexels)) {
-    return absl::InvalidArgumentError(
-        absl::StrFormat("budget_texels = %d, want %d ... %d for %d lights of up to %d maps each",
-                        budget,
-                        least * num_lights,
-                        kMostTexels * num_lights,
-                        num_lights,
-                        options->max_maps));
+  if (absl::Status status = ValidateSharedBudget(num_lights, *options); !status.ok()) {
+    return absl::Status(
+        status.code(),
+        absl::StrReplaceAll(status.message(), {{"options.texels = ", "budget_texels = "}}));
   }
   return std::optional<PlanOptions>(*options);
 }
@@ -112,9 +107,7 @@ LightFit PlanFitOf(const RequestLight& light,
     fit.matrix = figures.status();
     return fit;
   }
-  fit.matrix = plan->maps[0];  // the answer where it is the only one
-  fit.wrong_share = figures->wrong_share;
-  fit.plan = PlanFit{*std::move(plan), *figures, options.guard_texels};
+  SetPlan(*std::move(plan), *figures, options.guard_texels, &fit);
   return fit;
 }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "absl/strings/str_format.h"
-#include "absl/strings/strip.h"
 #include "base/stop.h"
 
 namespace lightfit {
@@ -24,15 +23,18 @@ absl::Status Validate(absl::Span<const PlannedLight> lights, const PlanOptions& 
 
 absl::Status ValidateSharedBudget(int num_lights, const PlanOptions& options) {
   if (options.each.has_value() || num_lights <= 1) return ValidatePlanOptions(options);
-  PlanOptions share = options;
-  share.texels /= num_lights;
-  absl::Status status = ValidatePlanOptions(share);
-  if (status.ok() || !ValidatePlanOptions(options).ok()) return status;
+  const int64_t least = LeastPlanTexels(options), share = options.texels / num_lights;
+  PlanOptions one = options;
+  one.texels = std::clamp(share, least, kMostPlanTexels);
+  if (absl::Status status = ValidatePlanOptions(one); !status.ok()) return status;
+  if (share == one.texels) return absl::OkStatus();
   return absl::InvalidArgumentError(
-      absl::StrFormat("options.texels = %d: each of %d lights has %s",
+      absl::StrFormat("options.texels = %d, want %d ... %d for %d lights of up to %d maps each",
                       options.texels,
+                      least * num_lights,
+                      kMostPlanTexels * num_lights,
                       num_lights,
-                      absl::StripPrefix(status.message(), "options.")));
+                      options.max_maps));
 }
 
 LightPlans FitPlans(const Surfaces& surfaces,

@@ -26,8 +26,7 @@ struct PlannedLight {
 
 using LightPlans = ScratchVector<absl::StatusOr<LightPlan>>;
 
-// Of so many lights, which PlanOptions::texels are divided among. InvalidArgument names the field,
-// and what each light would have.
+// Of so many lights, which PlanOptions::texels are divided among. InvalidArgument names the field.
 absl::Status ValidateSharedBudget(int num_lights, const PlanOptions& options);
 
 // PlanOptions::texels are those of all lights together; never exceeded. Element i belongs to

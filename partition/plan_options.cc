@@ -82,13 +82,12 @@ absl::Status ValidatePlanOptions(const PlanOptions& options) {
     }
   }
   const int64_t least = LeastPlanTexels(options);
-  const int64_t most = int64_t{kMaxMapSide} * kMaxMapSide;
-  if (options.texels < least || options.texels > most) {
+  if (options.texels < least || options.texels > kMostPlanTexels) {
     return absl::InvalidArgumentError(
         absl::StrFormat("options.texels = %d, want %d ... %d for %d maps",
                         options.texels,
                         least,
-                        most,
+                        kMostPlanTexels,
                         options.max_maps));
   }
   return absl::OkStatus();

@@ -44,7 +44,10 @@ struct PlanOptions {
   double guard_texels = 0.0;
 };
 
-// The fewest texels that a plan of so many maps may have.
+// The most texels that a plan may have: those of the largest single map.
+inline constexpr int64_t kMostPlanTexels = int64_t{kMaxMapSide} * kMaxMapSide;
+
+// The fewest that one of so many maps may have.
 inline int64_t LeastPlanTexels(int max_maps) { return int64_t{64} * max_maps; }
 
 // The same of plans with `sizes`, which must be valid.
