@@ -4,6 +4,7 @@
 #pragma once
 
 #include <gmock/gmock.h>
+#include <grpc/grpc.h>
 #include <grpcpp/grpcpp.h>
 #include <gtest/gtest.h>
 
@@ -34,6 +35,12 @@ inline ServerOptions QuietOptions() {
 class TestServer {
  public:
   explicit TestServer(const ServerOptions& options = QuietOptions()) {
+    // gRPC that comes down with its last object waits up to ten seconds for a client's poller.
+    static const bool is_kept_up = [] {
+      grpc_init();
+      return true;
+    }();
+    (void)is_kept_up;
     auto server = Server::Start(options);
     EXPECT_TRUE(server.ok()) << server.status();
     if (!server.ok()) return;
