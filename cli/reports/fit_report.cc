@@ -154,13 +154,6 @@ std::string FocusedInsteadText(const LightMatrix& matrix, const FitOptions& opti
       options.samples.min_samples);
 }
 
-std::string CoverText(const FitOptions& options) {
-  if (options.cover == Cover::kReceivers) return "visible";
-  if (options.border == BorderChoice::kDark) return "lit, dark border";
-  return options.border == BorderChoice::kAutomatic ? "shadowed or lit, the border by forecast"
-                                                    : "shadowed";
-}
-
 std::string MethodText(const FitOptions& options) {
   return absl::StrCat(WordFor(SearchWords(), options.search),
                       " search",

@@ -7,7 +7,6 @@
 #include "base/number.h"
 #include "cli/flags/choices.h"
 #include "cli/reports/fit_cells.h"
-#include "cli/reports/fit_report.h"
 
 namespace lightfit::cli {
 namespace {
