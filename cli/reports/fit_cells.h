@@ -12,7 +12,9 @@
 
 namespace lightfit::cli {
 
+// In the row of a light that has none.
 inline constexpr char kNoMatrix[] = "no matrix, see below";
+inline constexpr char kNoPlan[] = "no plan, see below";
 
 // Per cent of the image's pixels foretold to be wrong; "-" without a map.
 std::string WrongText(const absl::StatusOr<JudgedMatrix>& map);
