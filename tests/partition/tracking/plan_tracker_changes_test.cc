@@ -57,8 +57,9 @@ TEST(PlanTracker, ChoosesTheBorderByForecastAtUpdates) {
   const auto spot = [&](bool is_dark) {
     SyntheticReadback result = image;
     for (int i = 0; i < image.camera.width * image.camera.height; ++i) {
-      const double x = (i % image.camera.width + 0.5) / image.camera.width;
-      const double y = (i / image.camera.width + 0.5) / image.camera.height;
+      const int column = i % image.camera.width, row = i / image.camera.width;
+      const double x = (column + 0.5) / image.camera.width;
+      const double y = (row + 0.5) / image.camera.height;
       result.shadow_bits[i] = (std::hypot(x - 0.5, y - 0.75) < 0.12) != is_dark ? ~0u : 0u;
     }
     return result;
