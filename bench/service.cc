@@ -129,10 +129,15 @@ struct Contest {
   Client echo, library, service;
 };
 
-void Check(const grpc::Status& status) {
-  if (status.ok()) return;
-  std::fprintf(stderr, "bench_service: %s\n", status.error_message().c_str());
+// Ends the program from whatever thread it is; what was printed so far is not lost.
+[[noreturn]] void Fail(const std::string& message) {
+  std::fflush(nullptr);
+  std::fprintf(stderr, "bench_service: %s\n", message.c_str());
   std::quick_exit(1);
+}
+
+void Check(const grpc::Status& status) {
+  if (!status.ok()) Fail(status.error_message());
 }
 
 std::string Bytes(const auto& values) {
@@ -269,7 +274,9 @@ int Run(const Arguments& arguments) {
     on_pool([&] {
       for (const LightSummary& light : set.lights) {
         const auto summary = SummaryOfTotal(light.total);
-        if (!summary.ok() || !Fit(*summary, light.total.light, kMap).ok()) std::quick_exit(1);
+        const absl::Status status =
+            summary.ok() ? Fit(*summary, light.total.light, kMap).status() : summary.status();
+        if (!status.ok()) Fail(std::string(status.message()));
       }
     });
   };

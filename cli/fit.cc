@@ -61,13 +61,13 @@ void PrintNotes(const std::vector<FitComparison>& comparisons, const FitOptions&
   }
 }
 
-// Names the lights without a matrix on stderr and returns how many there are.
-int PrintFailedLights(const std::vector<FitComparison>& comparisons) {
+// Names the lights without a matrix or plan on stderr and returns how many there are.
+int PrintFailedLights(const std::vector<FitComparison>& comparisons, bool has_plans) {
   int num_failed = 0;
   for (const FitComparison& comparison : comparisons) {
     if (comparison.ok()) continue;
     ++num_failed;
-    PrintFailedLight("matrix", comparison.light.name, comparison.status());
+    PrintFailedLight(has_plans ? "plan" : "matrix", comparison.light.name, comparison.status());
   }
   return num_failed;
 }
@@ -156,7 +156,8 @@ Outcome FitAndDraw(const FitFlags& flags, const FitOptions& options, const FitIn
             : absl::StrFormat("shadow map %d x %d texels", flags.map.width, flags.map.height),
         options.samples,
         ShortMethodText(options),
-        flags.plan.guard_texels};
+        flags.plan.guard_texels,
+        plan.has_value()};
     outcome.picture = compared.surfaces.ok()
                           ? DrawPicture(*compared.surfaces, outcome.comparisons, picture, typeface)
                           : compared.surfaces.status();
@@ -209,7 +210,7 @@ int RunFit(const FitFlags& flags) {
   }
   WarnAboutPixels(outcome.comparisons);
   PrintNotes(outcome.comparisons, options);
-  const int num_failed = PrintFailedLights(outcome.comparisons);
+  const int num_failed = PrintFailedLights(outcome.comparisons, plan.has_value());
   status = WriteOutputs(flags, options, inputs->file, outcome);
   if (!status.ok()) return Fail(kExitBadInput, status);
   return num_failed > 0 ? kExitIncomplete : kExitOk;

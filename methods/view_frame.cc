@@ -8,6 +8,30 @@
 
 namespace lightfit {
 
+ViewFrame ViewFrame::OfPlane(const Eigen::Vector3d& plane) {
+  ViewFrame frame;
+  frame.across = plane.transpose() / plane.head<2>().norm();
+  frame.along << -frame.across.y(), frame.across.x(), 0.0;
+  return frame;
+}
+
+void ViewFrame::TurnAround() {
+  across = -across;
+  along = -along;
+  depth_slope = -depth_slope;
+}
+
+void ViewFrame::LayOver(const LightBody& body) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Eigen::Vector3d& ray : body.rays) {
+    const double b = along.dot(ray) / ray.z();
+    low = std::min(low, b);
+    high = std::max(high, b);
+  }
+  along.z() = -low;
+  length = high - low;
+}
+
 Eigen::Matrix3d ViewFrame::Warped(double one_over_n) const {
   Eigen::Matrix3d warped_from_ray;
   warped_from_ray.row(0) = across;
@@ -29,24 +53,11 @@ std::optional<ViewFrame> AlongView(const LightBody& body,
       body.light.kind == Light::Kind::kPoint ? std::max(eye_ray.norm(), 1e-300) : 1.0;
   if (!(length > kAligned * scale)) return std::nullopt;
 
-  ViewFrame frame;
-  frame.across = plane.transpose() / length;
-  frame.along << -frame.across.y(), frame.across.x(), 0.0;
+  ViewFrame frame = ViewFrame::OfPlane(plane);
   frame.depth_slope = frame.along * ray_from_world.leftCols<3>() * ViewDirection(camera);
-  if (frame.depth_slope < 0.0) {
-    frame.across = -frame.across;
-    frame.along = -frame.along;
-    frame.depth_slope = -frame.depth_slope;
-  }
+  if (frame.depth_slope < 0.0) frame.TurnAround();
   if (!(frame.depth_slope > kAligned)) return std::nullopt;
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const Eigen::Vector3d& ray : body.rays) {
-    const double b = frame.along.dot(ray) / ray.z();
-    low = std::min(low, b);
-    high = std::max(high, b);
-  }
-  frame.along.z() = -low;
-  frame.length = high - low;
+  frame.LayOver(body);
   return frame;
 }
 

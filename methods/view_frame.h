@@ -31,6 +31,16 @@ struct ViewFrame {
   // X_3 = 1, > 0: the sine of the angle between light and line for a directional light.
   double depth_slope = 0.0;
 
+  // From the plane through the eye and the line, as a covector on rays, which has a direction in
+  // the image plane; b begins at 0 there. The length and the slope are not known yet.
+  static ViewFrame OfPlane(const Eigen::Vector3d& plane);
+
+  // b grows the other way.
+  void TurnAround();
+
+  // Lets b run from 0 to the length over the body.
+  void LayOver(const LightBody& body);
+
   // Frame with the projective centre n in front of b = 0, for `one_over_n` = 1/n >= 0; 0 is the
   // unwarped frame. Rows a, b, and w = X_3 (1 + b/n), so that w > 0 on the body.
   Eigen::Matrix3d Warped(double one_over_n) const;

@@ -135,9 +135,8 @@ absl::StatusOr<LightMatrix> MatrixOfMap(const SearchInputs& inputs,
   if (inputs.summary.counts.used > 0) {
     matrix->figures.energy =
         inputs.samples != nullptr
-            ? MeasureFigures(
+            ? MeasureEnergy(
                   *inputs.samples, map_from_normalized, options.metric, options.along_edge_share)
-                  .energy
             : inputs.summary.tensor.Energy(map_from_normalized);
     matrix->search.energy_start = matrix->figures.energy;
     matrix->search.stop_reason = StopReason::kNoSearch;

@@ -62,7 +62,6 @@ class MapExtents {
   explicit MapExtents(const Eigen::Matrix3d& map_from_ray);
   // In the metric; w <= 0 counts as it stands, squared.
   Extents Of(const RaySample& sample) const;
-  double WOf(const Eigen::Vector3d& ray) const { return axis_.dot(ray); }
 
  private:
   Eigen::Vector3d axis_;

@@ -47,12 +47,18 @@ absl::StatusOr<Figures> MeasurePlan(const LightView& view,
         MapFromRay(plan.maps[k].map_from_world, light);
     if (!map_from_ray.ok()) return map_from_ray.status();
     const Eigen::Matrix3d map_from_normalized = *map_from_ray * ray_from_normalized;
-    Figures of_map =
-        MeasureFigures(by_map[k], map_from_normalized, options.metric, options.along_edge_share);
+    Figures of_map;
+    if (of_maps != nullptr) {
+      of_map =
+          MeasureFigures(by_map[k], map_from_normalized, options.metric, options.along_edge_share);
+      of_map.samples = view.samples.counts;
+      of_map.samples.used = static_cast<int64_t>(by_map[k].size());
+      of_maps->push_back(of_map);
+    } else {
+      of_map.energy =
+          MeasureEnergy(by_map[k], map_from_normalized, options.metric, options.along_edge_share);
+    }
     figures.energy += of_map.energy;
-    of_map.samples = view.samples.counts;
-    of_map.samples.used = static_cast<int64_t>(by_map[k].size());
-    if (of_maps != nullptr) of_maps->push_back(of_map);
     footprints.Add(map_from_normalized, by_map[k]);
     num_asked += by_map[k].size();
   }

@@ -53,7 +53,8 @@ absl::StatusOr<Canvas> DrawPicture(const Surfaces& surfaces,
           "read-back %d x %d pixels, %s", readback.width(), readback.height(), options.maps));
   for (size_t i = 0; i < lights.size(); ++i) {
     if (!panels[i].status.ok()) {
-      page.DrawFailedRow(lights[i].light.name, messages[i]);
+      page.DrawFailedRow(
+          lights[i].light.name, options.has_plans ? "no plan" : "no matrix", messages[i]);
     } else if (panels[i].plan.has_value()) {
       page.DrawPlanRow(readback, lights[i], panels[i]);
     } else {

@@ -7,7 +7,7 @@
 // One row per light: the read-back coloured by the footprint of the focused map and of the fitted
 // one, on one scale, then both maps with what lands in them. Of a plan: by that of the single map
 // and of the plan, then which pixel asks which map, and what lands in each. A light without a
-// matrix has its message instead.
+// matrix or plan has its message instead.
 #pragma once
 
 #include <string>
@@ -27,6 +27,7 @@ struct PictureOptions {
   SampleOptions samples;      // as used by the fit
   std::string final_label;    // what "after" is, for the panel titles: "lightfit", "as published"
   double guard_texels = 0.0;  // of plans
+  bool has_plans = false;     // whether plans were asked for
 };
 
 absl::StatusOr<Canvas> DrawPicture(const Surfaces& surfaces,

@@ -111,8 +111,9 @@ void FitRows::DrawTitle(const std::string& title, const std::string& sizes) {
 }
 
 void FitRows::DrawFailedRow(const std::string& light_name,
+                            const std::string& words,
                             const std::vector<std::string>& message) {
-  HeaderLine(light_name, "no matrix", kWarningColor);
+  HeaderLine(light_name, words, kWarningColor);
   for (const std::string& line : message) {
     Text(kMargin, y_ + 16, line, {.size_px = 16, .color = kTextColor});
     y_ += kMessageLineHeight;

@@ -45,7 +45,10 @@ class FitRows {
   FitRows(const FitLayout& layout, int height, const Typeface& typeface);
 
   void DrawTitle(const std::string& title, const std::string& sizes);
-  void DrawFailedRow(const std::string& light_name, const std::vector<std::string>& message);
+  // `words` say what there is none of.
+  void DrawFailedRow(const std::string& light_name,
+                     const std::string& words,
+                     const std::vector<std::string>& message);
   // `after` says what the final matrix is.
   void DrawMatrixRow(const Readback& readback,
                      const FitComparison& light,

@@ -11,6 +11,7 @@
 #include "base/number.h"
 #include "base/suggest.h"
 #include "cli/flags/choices.h"
+#include "cli/flags/size_flags.h"
 
 namespace lightfit::cli {
 namespace {
@@ -196,18 +197,6 @@ void DeclareAllocateFlags(CLI::App* app, AllocateFlags* flags) {
     CheckGoal(*flags);
     CheckPlans(*app, flags);
   });
-}
-
-absl::StatusOr<int64_t> ParseTexels(const std::string& text) {
-  int64_t texels = 0;
-  if (absl::SimpleAtoi(text, &texels)) {
-    if (texels >= 1) return texels;
-    return absl::InvalidArgumentError(absl::StrCat(text, ": want at least 1 texel"));
-  }
-  const absl::StatusOr<MapSize> size = ParseMapSize(text);
-  if (size.ok()) return TexelsOf(*size);
-  return absl::InvalidArgumentError(
-      absl::StrCat(size.status().message(), ", or a number of texels such as 16777216"));
 }
 
 absl::StatusOr<Tolerance> ParseTolerance(const std::string& text) {

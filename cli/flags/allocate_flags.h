@@ -36,9 +36,6 @@ struct AllocateFlags {
 // Declares every option on `app`, to be parsed into `flags`, which must stay where it is.
 void DeclareAllocateFlags(CLI::App* app, AllocateFlags* flags);
 
-// "4096x4096", or a number of texels.
-absl::StatusOr<int64_t> ParseTexels(const std::string& text);
-
 // "rms:1.0", "p99:1.5" or "worst:3".
 absl::StatusOr<Tolerance> ParseTolerance(const std::string& text);
 

@@ -12,6 +12,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
+#include "cli/flags/size_flags.h"
 #include "jobs/compare/rows.h"
 
 namespace lightfit::cli {

@@ -3,13 +3,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "absl/strings/str_split.h"
 #include "base/suggest.h"
 #include "cli/flags/choices.h"
-#include "geometry/map_size.h"
+#include "cli/flags/size_flags.h"
 
 namespace lightfit::cli {
 namespace {
@@ -319,21 +317,6 @@ void CheckSource(const CLI::App& app,
                                "is about a read-back; leave it out with --summary, whose files "
                                "hold the lights and what their samples came to");
   }
-}
-
-absl::StatusOr<MapSize> ParseMapSize(const std::string& text) {
-  const std::vector<std::string> sides = absl::StrSplit(text, 'x');
-  MapSize map;
-  if (sides.size() != 2 || !absl::SimpleAtoi(sides[0], &map.width) ||
-      !absl::SimpleAtoi(sides[1], &map.height)) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("\"", text, "\" is no size, want WIDTHxHEIGHT in texels such as 1024x1024"));
-  }
-  if (std::min(map.width, map.height) < 1 || std::max(map.width, map.height) > kMaxMapSide) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(text, ": want 1 to ", kMaxMapSide, " texels along each side"));
-  }
-  return map;
 }
 
 }  // namespace lightfit::cli

@@ -77,7 +77,4 @@ void CheckSource(const CLI::App& app,
                  const FitFlags& flags,
                  const std::vector<std::string>& readback_groups);
 
-// "1024x512"; both at least 1 and at most 65536.
-absl::StatusOr<MapSize> ParseMapSize(const std::string& text);
-
 }  // namespace lightfit::cli

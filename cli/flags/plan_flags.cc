@@ -1,12 +1,10 @@
 #include "cli/flags/plan_flags.h"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <iterator>
 #include <string>
 
 #include "absl/strings/str_cat.h"
-#include "cli/flags/allocate_flags.h"
+#include "cli/flags/size_flags.h"
 #include "optimizer/sizing/map_sizes.h"
 #include "partition/plan.h"
 
@@ -30,8 +28,6 @@ constexpr Unused kUnusedByPlans[] = {
     {"--rounds", "the plan of a shot is fitted to its samples, and weighs them as it goes"},
 };
 
-constexpr const char* kSizeFlags[] = {"--multiple", "--power-of-two", "--min-side", "--max-side"};
-
 // Verbs have some of the options each.
 size_t CountOf(const CLI::App& app, const char* flag) {
   const CLI::Option* option = app.get_option_no_throw(flag);
@@ -39,28 +35,6 @@ size_t CountOf(const CLI::App& app, const char* flag) {
 }
 
 }  // namespace
-
-void DeclareSizeFlags(CLI::App* app, const std::string& group, MapSizeRules* rules) {
-  CLI::Option* multiple =
-      app->add_option("--multiple", rules->multiple, "Sides are multiples of this [64]")
-          ->type_name("TEXELS")
-          ->group(group);
-  app->add_flag("--power-of-two", rules->powers_of_two, "Sides are powers of two")
-      ->excludes(multiple)
-      ->group(group);
-  app->add_option("--min-side", rules->min_side, "No side is shorter [64]")
-      ->type_name("TEXELS")
-      ->group(group);
-  app->add_option("--max-side", rules->max_side, "No side is longer [16384]")
-      ->type_name("TEXELS")
-      ->group(group);
-}
-
-bool HasSizeFlags(const CLI::App& app) {
-  return std::any_of(std::begin(kSizeFlags), std::end(kSizeFlags), [&](const char* flag) {
-    return CountOf(app, flag) > 0;
-  });
-}
 
 void DeclareMapsFlags(CLI::App* app, PlanFlags* flags) {
   app->add_option(

@@ -7,7 +7,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <string>
 
 #include "optimizer/sizing/map_sizes.h"
 #include "partition/plan_options.h"
@@ -26,10 +25,6 @@ struct PlanFlags {
   MapSizeRules rules;      // of the sizes of maps
   bool has_rules = false;  // whether any of them was given
 };
-
-// Declares the rules of sizes, --multiple and so on.
-void DeclareSizeFlags(CLI::App* app, const std::string& group, MapSizeRules* rules);
-bool HasSizeFlags(const CLI::App& app);
 
 // Declares --maps, --texels, --guard and the rules of sizes on `app`, which has --map. All maps
 // together have by default the texels of `one_map`, the default of --map.

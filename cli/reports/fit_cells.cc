@@ -19,6 +19,13 @@ std::string RatioText(const absl::StatusOr<JudgedMatrix>& before, const Figures&
   return absl::StrCat(FigureText(ratio), "x");
 }
 
+std::string CoverText(const FitOptions& options) {
+  if (options.cover == Cover::kReceivers) return "visible";
+  if (options.border == BorderChoice::kDark) return "lit, dark border";
+  return options.border == BorderChoice::kAutomatic ? "shadowed or lit, the border by forecast"
+                                                    : "shadowed";
+}
+
 bool HasDarkBorder(const std::vector<FitComparison>& comparisons) {
   return std::any_of(comparisons.begin(), comparisons.end(), [](const FitComparison& comparison) {
     return comparison.ok() && comparison.border() == Border::kDark;

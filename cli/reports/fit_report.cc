@@ -95,7 +95,8 @@ Table FigureTable(const std::vector<FitComparison>& comparisons) {
   return table;
 }
 
-Table SampleTable(const std::vector<FitComparison>& comparisons) {
+// `none` stands in the row of a light that has no answer.
+Table SampleTable(const std::vector<FitComparison>& comparisons, const char* none) {
   Table table;
   table.AddColumn("", "light");
   table.AddColumn("shadow-edge pixels", "found");
@@ -108,7 +109,7 @@ Table SampleTable(const std::vector<FitComparison>& comparisons) {
   if (has_border) table.AddColumn("rejected", "far outside");
   for (const FitComparison& comparison : comparisons) {
     if (!comparison.ok()) {
-      table.AddRow({comparison.light.name, kNoMatrix});
+      table.AddRow({comparison.light.name, none});
       continue;
     }
     const SampleCounts& counts = comparison.samples();
@@ -154,13 +155,6 @@ std::string FocusedInsteadText(const LightMatrix& matrix, const FitOptions& opti
       options.samples.min_samples);
 }
 
-std::string CoverText(const FitOptions& options) {
-  if (options.cover == Cover::kReceivers) return "visible";
-  if (options.border == BorderChoice::kDark) return "lit, dark border";
-  return options.border == BorderChoice::kAutomatic ? "shadowed or lit, the border by forecast"
-                                                    : "shadowed";
-}
-
 std::string MethodText(const FitOptions& options) {
   return absl::StrCat(WordFor(SearchWords(), options.search),
                       " search",
@@ -192,7 +186,7 @@ std::string FitReportText(const std::string& source,
                                       MethodText(options)),
                       FigureTable(comparisons).Text(),
                       "\n",
-                      SampleTable(comparisons).Text(),
+                      SampleTable(comparisons, kNoMatrix).Text(),
                       kLegend,
                       HasDarkBorder(comparisons) ? kBorderLegend : "",
                       ForecastText(readback, comparisons),
@@ -213,7 +207,7 @@ std::string PlanReportText(const std::string& source,
                       "\n",
                       PlanMapTable(comparisons).Text(),
                       "\n",
-                      SampleTable(comparisons).Text(),
+                      SampleTable(comparisons, kNoPlan).Text(),
                       PlanLegend(options),
                       HasDarkBorder(comparisons) ? kPlanBorderLegend : "",
                       ForecastText(readback, comparisons),

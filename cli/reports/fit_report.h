@@ -29,9 +29,6 @@ std::string FocusedInsteadText(const LightMatrix& matrix, const FitOptions& opti
 // "global search, parallelogram, l2 metric": the choices in the command line's words.
 std::string MethodText(const FitOptions& options);
 
-// "shadowed or lit, the border by forecast": what maps have room for.
-std::string CoverText(const FitOptions& options);
-
 // "global search, l1-edge": as much of it as fits over a picture.
 std::string ShortMethodText(const FitOptions& options);
 

@@ -7,7 +7,6 @@
 #include "base/number.h"
 #include "cli/flags/choices.h"
 #include "cli/reports/fit_cells.h"
-#include "cli/reports/fit_report.h"
 
 namespace lightfit::cli {
 namespace {
@@ -39,7 +38,7 @@ Table PlanTable(const std::vector<FitComparison>& comparisons) {
   table.AddColumn("time", "ms");
   for (const FitComparison& comparison : comparisons) {
     if (!comparison.ok()) {
-      table.AddRow({comparison.light.name, kNoMatrix});
+      table.AddRow({comparison.light.name, kNoPlan});
       continue;
     }
     const JudgedPlan& plan = **comparison.plan;

@@ -24,6 +24,7 @@ ShotContext::ShotContext(const ShotJob& job)
       paths{job.folder},
       keys(ComputeShotKeys(job)),
       frame_status(job.frames.size()),
+      ray_sums(job.frames.size()),
       has_summary_(job.frames.size(), 0) {
   for (const ShotMode mode : kShotModes) {
     rows[static_cast<size_t>(mode)].resize(job.frames.size());

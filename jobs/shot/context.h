@@ -4,8 +4,8 @@
 // In:   ShotJob.
 // Out:  rows by mode and frame, what is wrong with which frame, the first file that failed.
 //
-// Threads: Step() and Fail() are for any of them; rows and frame_status have an element for each
-// frame, which the thread that works on the frame writes.
+// Threads: Step() and Fail() are for any of them; rows, frame_status and ray_sums have an element
+// for each frame, which the thread that works on the frame writes.
 #pragma once
 
 #include <array>
@@ -20,8 +20,12 @@
 #include "jobs/shot/job.h"
 #include "jobs/shot/key.h"
 #include "jobs/shot/result.h"
+#include "partition/ray_sum.h"
 
 namespace lightfit {
+
+// What one frame shows, by light, or why it shows nothing.
+using FrameRaySums = std::vector<absl::StatusOr<RaySum>>;
 
 class ShotContext {
  public:
@@ -41,6 +45,11 @@ class ShotContext {
 
   // Whether kPerShot sums the frames up in summaries: a plan of several maps needs more than these.
   bool MakesSummaries() const { return job.Has(ShotMode::kPerShot) && !job.plans.has_value(); }
+
+  // Whether what every frame shows is kept for kPerShot's plans, which are not there yet.
+  bool SumsRays() const {
+    return job.Has(ShotMode::kPerShot) && job.plans.has_value() && !HasShot();
+  }
 
   // Whether all of the frame is there that can be while kPerShot has no matrices; whether a matrix
   // of its own, per frame or tracked, is missing.
@@ -65,6 +74,7 @@ class ShotContext {
 
   ShotRows rows;
   std::vector<absl::Status> frame_status;  // by frame: whether its file could be read
+  std::vector<FrameRaySums> ray_sums;      // by frame: for the shot's plans, where SumsRays()
   std::vector<std::string> notes;          // for people
 
  private:

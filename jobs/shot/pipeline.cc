@@ -13,6 +13,7 @@
 #include "io/summary_file.h"
 #include "jobs/shot/frame_fitter.h"
 #include "jobs/shot/judge.h"
+#include "jobs/shot/whole_plans.h"
 #include "optimizer/fit.h"
 #include "wire/shot_proto.h"
 
@@ -104,6 +105,7 @@ class FramePipeline {
       work->per_frame.look_ups = LookUpsOf(work->per_frame.answers);
     }
     if (NeedsSummary(context_, frame)) Summarise(*work);
+    if (context_.SumsRays()) context_.ray_sums[frame] = SumRaysOfFrame(job_, *work->views);
   }
 
   void LoadDone(ShotMode mode, size_t frame, FrameWork::Mode* part) {
@@ -209,6 +211,7 @@ class FramePipeline {
 bool MustReadFrame(const ShotContext& context, size_t frame) {
   if (context.NeedsFits(frame)) return true;
   if (NeedsSummary(context, frame) && !context.HasSummary(frame)) return true;
+  if (context.SumsRays()) return true;
   // The frame after needs it for its crawl.
   return frame + 1 < context.job.frames.size() && context.NeedsFits(frame + 1);
 }

@@ -1,13 +1,14 @@
 // jobs/shot/pipeline.h
 //
-// The first stage of a shot: per-frame and tracked matrices, and summaries.
+// The first stage of a shot: per-frame and tracked matrices, and summaries or, for plans, what
+// every frame shows.
 // In:   ShotContext.
 // Out:  files of every frame that is not done, rows of all, and the sum of the summaries.
 //
 // Frames go through three stations, a few at a time, so that all processors are busy though the
 // tracker has to go from frame to frame:
 //
-//   prepare   read, fit, summarise                     frames in parallel
+//   prepare   read, fit, sum up                        frames in parallel
 //   track     the tracker's matrices                   one frame after the other
 //   finish    judge against the frame before, write    frames in parallel
 //

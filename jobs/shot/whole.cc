@@ -253,7 +253,7 @@ void JudgeFrames(const ShotAnswers& answers, int begin, int end, ShotContext* co
 
 absl::Status FitWholeShot(const SummarySet& sum, ShotContext* context) {
   const ShotJob& job = context->job;
-  const bool fits_plans = job.plans.has_value() && !context->HasShot();
+  const bool fits_plans = context->SumsRays();
   ShotAnswers plans;
   if (fits_plans) plans = FitShotPlans(context);
   const absl::StatusOr<v1::FitResult> shot =
@@ -277,9 +277,7 @@ int NumWholeShotSteps(const ShotContext& context) {
   for (size_t i = 0; i < job.frames.size(); ++i) {
     num_steps += context.IsDone(ShotMode::kPerShot, i) ? 0 : 1;
   }
-  if (!context.HasShot() && job.plans.has_value()) {
-    num_steps += static_cast<int>(job.frames.size());
-  } else if (!context.HasShot() && IsL1(job.fit().metric)) {
+  if (!context.HasShot() && !job.plans.has_value() && IsL1(job.fit().metric)) {
     num_steps += (job.rounds + 1) * static_cast<int>(job.frames.size());
   }
   return num_steps;

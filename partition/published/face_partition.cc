@@ -1,8 +1,6 @@
 #include "partition/published/face_partition.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -47,24 +45,13 @@ std::optional<ViewFrame> AlongFace(const LightBody& body,
   const Eigen::Vector3d step =
       body.ray_from_world.leftCols<3>() * BisectorOf(cell, body.light, eye);
   const Eigen::Vector3d plane = eye_ray.cross(step);
-  const double length = plane.head<2>().norm();
-  if (!(length > 0.0)) return std::nullopt;
-  ViewFrame frame;
-  frame.across = plane.transpose() / length;
-  frame.along << -frame.across.y(), frame.across.x(), 0.0;
+  if (!(plane.head<2>().norm() > 0.0)) return std::nullopt;
+  ViewFrame frame = ViewFrame::OfPlane(plane);
   // b = along.X / X_3 is monotonic on the way outwards.
   if (frame.along.dot(step) * eye_ray.z() < frame.along.dot(eye_ray) * step.z()) {
-    frame.across = -frame.across;
-    frame.along = -frame.along;
+    frame.TurnAround();
   }
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const Eigen::Vector3d& ray : body.rays) {
-    const double b = frame.along.dot(ray) / ray.z();
-    low = std::min(low, b);
-    high = std::max(high, b);
-  }
-  frame.along.z() = -low;
-  frame.length = high - low;
+  frame.LayOver(body);
   return frame;
 }
 

@@ -28,15 +28,6 @@ double ImageBeamWidth(const LloydView& view, double z) { return z * TwoTan(view)
 
 double LispsmWarp(const LloydView& view) { return view.near + std::sqrt(view.near * view.far); }
 
-Eigen::Vector2d WarpedPlace(const LloydView& view, double warp, double x, double z) {
-  const double far = WarpedFar(view, warp), depth = warp + z - view.near;
-  // The warp's own half angle: it is as wide as the view at the far plane.
-  const double two_tan = view.far / far * TwoTan(view);
-  const double length = far - warp;
-  return {x / (depth * two_tan) + 0.5,
-          (far + warp) / (2.0 * length) - far * warp / (depth * length) + 0.5};
-}
-
 double XError(const LloydView& view, double warp, double z) {
   return view.far / z * ShareOfFar(view, warp, z);
 }
@@ -60,24 +51,12 @@ double WarpOfEta(const LloydView& view, double eta) {
   return view.near * (root + 1.0 - eta * (alpha - 1.0)) / (eta + 1.0);
 }
 
-double EtaOfWarp(const LloydView& view, double warp) {
-  const double lispsm = LispsmWarp(view);
-  const double least = MaxZError(view, lispsm), error = MaxZError(view, warp);
-  if (warp > lispsm) {
-    const double unwarped = MaxZError(view, std::numeric_limits<double>::infinity());
-    return (least - error) / (unwarped - least);
-  }
-  return (error - least) / (MaxZError(view, view.near) - least);
-}
-
 double WarpStorage(const LloydView& view, double warp) {
   const double alpha = Alpha(view), least = (alpha - 1.0) / TwoTan(view);
   if (warp <= LispsmWarp(view)) return least;
   const double share = NearShare(view, warp);
   return least * alpha * share * share;
 }
-
-double LogarithmicBeamWidth(const LloydView& view, double z) { return z * std::log(Alpha(view)); }
 
 double LogarithmicZError(const LloydView& view) { return std::log(Alpha(view)) / TwoTan(view); }
 

@@ -12,8 +12,6 @@
 // above a level view ("overhead") or straight behind the viewer ("behind").
 #pragma once
 
-#include <Eigen/Core>
-
 namespace lightfit {
 
 // 0 < near < far, 0 < half_angle_rad < pi / 2.
@@ -30,9 +28,6 @@ double ImageBeamWidth(const LloydView& view, double z);
 // without a warp an infinite n'. Where `warp` stands below it is n or more, and may be infinite.
 double LispsmWarp(const LloydView& view);
 
-// (5), (6) Place in the map, 0 ... 1 each, of what lies x aside at depth z. Finite warps only.
-Eigen::Vector2d WarpedPlace(const LloydView& view, double warp, double x, double z);
-
 // (7), (8) Errors across and along the view at depth z.
 double XError(const LloydView& view, double warp, double z);
 double ZError(const LloydView& view, double warp, double z);
@@ -42,17 +37,15 @@ double MaxXError(const LloydView& view, double warp);
 double MaxZError(const LloydView& view, double warp);
 
 // (11) The warp from eta in -1 ... 1: infinite, LispsmWarp(), n at -1, 0, 1; its largest error
-// along the view is linear in eta on both sides of 0. And the inverse (appendix B).
+// along the view is linear in eta on both sides of 0.
 double WarpOfEta(const LloydView& view, double eta);
-double EtaOfWarp(const LloydView& view, double warp);
 
 // (12) The storage factor, MaxXError() MaxZError(). Least, and the same, for warps up to
 // LispsmWarp().
 double WarpStorage(const LloydView& view, double warp);
 
-// Appendix C: beam width and error along the view, at any depth, of a map in which depth is
-// logarithmic. Its storage factor is the error, as across the view there is none.
-double LogarithmicBeamWidth(const LloydView& view, double z);
+// Appendix C: error along the view, at any depth, of a map in which depth is logarithmic. Its
+// storage factor is the error, as across the view there is none.
 double LogarithmicZError(const LloydView& view);
 
 // Storage factors of `parts` maps, split by depth at equal ratios: (17), and with a warp (18).

@@ -174,37 +174,41 @@ bool PlanKeeper::HoldByOne(const ScratchVector<int>& outside,
   return true;
 }
 
-bool PlanKeeper::HoldStepByStep(bool by_groups, KeptMaps* maps) const {
+std::optional<HeldBins> PlanKeeper::HoldStepByStep(bool by_groups,
+                                                   HeldBins held,
+                                                   KeptMaps* maps) const {
   const size_t most_steps = 3 * maps->size() + 2;
   for (size_t step = 0; step < most_steps && !StopRequested(); ++step) {
-    const HeldBins held = HeldBy(*maps);
+    if (step > 0) held = HeldBy(*maps);
     const ScratchVector<int> outside = held.BinsOutside();
-    if (outside.empty()) return true;
+    if (outside.empty()) return held;
     const bool holds =
         HoldByOne(by_groups ? LargestGroup(held.rays, outside, *maps) : outside, held, maps);
-    if (!holds) return false;
+    if (!holds) return std::nullopt;
   }
-  return false;
+  return std::nullopt;
 }
 
-bool PlanKeeper::HoldAll(KeptMaps* maps) const {
-  const HeldBins held = HeldBy(*maps);
+std::optional<HeldBins> PlanKeeper::HoldAll(KeptMaps* maps) const {
+  HeldBins held = HeldBy(*maps);
   const ScratchVector<int> outside = held.BinsOutside();
-  if (outside.empty()) return true;
+  if (outside.empty()) return held;
   // By one map, or each group of bins by its own.
   KeptMaps by_one = *maps, by_several = *maps;
-  const bool one_holds = HoldStepByStep(/*by_groups=*/false, &by_one);
   const bool has_groups = LargestGroup(held.rays, outside, *maps).size() < outside.size();
-  const bool several_hold = has_groups && HoldStepByStep(/*by_groups=*/true, &by_several);
-  if (!one_holds && !several_hold) return false;
+  std::optional<HeldBins> held_by_several;
+  if (has_groups) held_by_several = HoldStepByStep(/*by_groups=*/true, held, &by_several);
+  std::optional<HeldBins> held_by_one =
+      HoldStepByStep(/*by_groups=*/false, std::move(held), &by_one);
+  if (!held_by_one.has_value() && !held_by_several.has_value()) return std::nullopt;
   const bool takes_several =
-      several_hold && (!one_holds || costs_.CostOf(by_several) < costs_.CostOf(by_one));
+      held_by_several.has_value() &&
+      (!held_by_one.has_value() || costs_.CostOf(by_several) < costs_.CostOf(by_one));
   *maps = takes_several ? std::move(by_several) : std::move(by_one);
-  return true;
+  return takes_several ? std::move(held_by_several) : std::move(held_by_one);
 }
 
-double PlanKeeper::TightEnergyOf(const KeptMaps& maps) const {
-  const HeldBins held = HeldBy(maps);
+double PlanKeeper::TightEnergyOf(const KeptMaps& maps, const HeldBins& held) const {
   KeptMaps tight = maps;
   for (size_t k = 0; k < maps.size(); ++k) {
     const std::optional<KeptMap> fitted = FittedTo(held,

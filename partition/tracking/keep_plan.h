@@ -39,13 +39,13 @@ class PlanKeeper {
 
   HeldBins HeldBy(const KeptMaps& maps) const;
 
-  // Moves maps and fits them anew, at the least cost, so that together they hold all. Whether they
-  // do.
-  bool HoldAll(KeptMaps* maps) const;
+  // Moves maps and fits them anew, at the least cost, so that together they hold all: HeldBy() of
+  // the maps as they are then. Nothing, and the maps as they were, where there is no way.
+  std::optional<HeldBins> HoldAll(KeptMaps* maps) const;
 
   // The energy if every map were fitted anew to what asks it, as tightly as may be, where that is
-  // better than what is there.
-  double TightEnergyOf(const KeptMaps& maps) const;
+  // better than what is there. `held` is HeldBy(maps).
+  double TightEnergyOf(const KeptMaps& maps, const HeldBins& held) const;
 
   // Fits maps anew, each to what asks it, so that the energy is below `most` at the least price.
   // The price; infinite, and the maps as they were, where there is no way.
@@ -67,7 +67,7 @@ class PlanKeeper {
 
   // Lets one map hold bins that no map holds. Whether one can.
   bool HoldByOne(const ScratchVector<int>& outside, const HeldBins& held, KeptMaps* maps) const;
-  bool HoldStepByStep(bool by_groups, KeptMaps* maps) const;
+  std::optional<HeldBins> HoldStepByStep(bool by_groups, HeldBins held, KeptMaps* maps) const;
 
   const LightView& view_;
   const ServedRays& rays_;

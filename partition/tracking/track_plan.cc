@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "base/stop.h"
@@ -260,21 +261,22 @@ class FrameTracker {
     if (!rays.ok()) return rays.status();
     const KeptMaps before = maps;
     const PlanKeeper keeper(*view_, *rays, before, tight_, roomy_fit_);
-    const bool holds_all = keeper.HoldAll(&maps);
+    const std::optional<HeldBins> held = keeper.HoldAll(&maps);
     if (absl::Status status = CheckStop(light_); !status.ok()) return status;
-    if (!holds_all) return NewPlan(TrackerAction::kInvalid);
+    if (!held.has_value()) return NewPlan(TrackerAction::kInvalid);
 
-    const auto lay = [&] {
-      return LayPlan(
-          *view_, maps, keeper.HeldBy(maps), view_fit_, tight_.guard_texels, DepthRoom());
+    const auto lay = [&](const HeldBins& by_maps) {
+      return LayPlan(*view_, maps, by_maps, view_fit_, tight_.guard_texels, DepthRoom());
     };
-    absl::StatusOr<LightPlan> plan = lay();
-    double best = BestOr(keeper.TightEnergyOf(maps));
+    absl::StatusOr<LightPlan> plan = lay(*held);
+    double best = BestOr(keeper.TightEnergyOf(maps, *held));
     if (plan.ok() && IsTooMuch(plan->energy, best)) {
       // What the maps alone would gain is an estimate.
       FitOwn();
       best = BestOr(best);
-      if (IsTooMuch(plan->energy, best) && LowersEnergy(keeper, best, &maps)) plan = lay();
+      if (IsTooMuch(plan->energy, best) && LowersEnergy(keeper, best, &maps)) {
+        plan = lay(keeper.HeldBy(maps));
+      }
     }
     if (absl::Status status = CheckStop(light_); !status.ok()) return status;
     if (!plan.ok() || (IsTooMuch(plan->energy, best) && CanReplace())) {

@@ -202,6 +202,16 @@ TEST(FitPlan, OneMapIsTheFitWithoutAPlan) {
   EXPECT_FALSE(ReadResult(one).has_plan_options());
 }
 
+// Maps of which the filter leaves nothing: what there is none of is a plan.
+TEST(FitPlan, ALightWithoutAPlanSaysSo) {
+  const ProcessResult result =
+      RunLightfit(Joined(kFitRoom, {"--maps", "2", "--texels", "128", "--guard", "40"}));
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.err, HasSubstr("no plan for light \"key\""));
+  EXPECT_THAT(result.out, HasSubstr("no plan, see below"));
+  EXPECT_THAT(result.err + result.out, Not(HasSubstr("no matrix")));
+}
+
 // A lamp among its receivers: without a plan its error says what would do, and that does.
 TEST(FitPlan, ALampAmongItsReceiversHasAPlan) {
   const ProcessResult single = RunLightfit(kFitRoom);

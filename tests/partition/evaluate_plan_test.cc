@@ -170,6 +170,14 @@ TEST(EvaluatePlan, MeasuringIsTheSameWithoutTheForecast) {
   EXPECT_FALSE(measured->wrong_share.has_value());
   EXPECT_EQ(measured->energy, whole->energy);
   EXPECT_EQ(measured->footprint.p99, whole->footprint.p99);
+  ScratchVector<Figures> of_maps;
+  const absl::StatusOr<Figures> with_maps =
+      MeasurePlan(view, PlanOf(*fitted), Automatic(), /*guard_texels=*/0.0, &of_maps);
+  ASSERT_THAT(with_maps, IsOk());
+  EXPECT_EQ(with_maps->energy, whole->energy);
+  double energy = 0.0;
+  for (const Figures& of_map : of_maps) energy += of_map.energy;
+  EXPECT_EQ(energy, whole->energy);
 }
 
 TEST(EvaluatePlan, SaysWhatIsWrong) {

@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <cstdio>
 
+#include "absl/strings/str_cat.h"
 #include "partition/evaluate_plan.h"
 #include "tests/partition/plan_case.h"
 #include "tests/partition/receivers.h"
@@ -26,10 +27,12 @@ using testing::Unserved;
 
 constexpr int kAllSamples = 1 << 20;
 constexpr int kNumFrames = 4;
-constexpr double kStep = 0.4;  // metres a frame
+constexpr double kStep = 0.4;   // metres a frame
+constexpr double kGuard = 3.0;  // texels
 
-PlanOptions OptionsOf(int max_maps) {
+PlanOptions OptionsOf(int max_maps, double guard_texels = 0.0) {
   PlanOptions options;
+  options.guard_texels = guard_texels;
   options.max_maps = max_maps;
   options.texels = 200 * 200;
   options.choose_by_forecast = false;
@@ -86,28 +89,43 @@ TEST(RaySum, OfOneReadbackHasItsPlan) {
 TEST(RaySum, HasTheEnergyOfAllFrames) {
   constexpr double kTolerance = 1e-6;  // frames whose rays are in other coordinates
   int num_cases = 0;
+  int64_t num_on_guard = 0;
   for (uint64_t seed = 1; seed <= 3; ++seed) {
     const PlanWalk walk(seed, kNumFrames, kStep);
     for (const Light& light : walk.lights) {
-      const PlanOptions options = OptionsOf(3);
-      const auto plan = FitRaySum(SumOfWalk(walk, light, options.fit, kAllSamples), options);
-      if (!plan.ok()) continue;
-      double energy = 0.0;
-      int64_t num_used = 0;
-      for (const Surfaces& surfaces : walk.frames) {
-        const auto view = ViewLight(surfaces, light, Border::kLit, options.fit);
-        const auto figures = EvaluatePlan(*view, PlanOf(*plan), options.fit);
-        if (!figures.ok()) continue;  // no sample in this frame
-        energy += figures->energy;
+      const RaySum sum = SumOfWalk(walk, light, FitOptions(), kAllSamples);
+      for (const double guard_texels : {0.0, kGuard}) {
+        const PlanOptions options = OptionsOf(3, guard_texels);
+        const auto plan = FitRaySum(sum, options);
+        if (!plan.ok()) continue;
+        double energy = 0.0, energy_of_maps = 0.0;
+        int64_t num_asked = 0, num_used = 0;
+        for (const Surfaces& surfaces : walk.frames) {
+          const auto view = ViewLight(surfaces, light, Border::kLit, options.fit);
+          const auto asked = [&](double guard) {
+            return MeasurePlan(*view, PlanOf(*plan), options.fit, guard);
+          };
+          const auto figures = asked(guard_texels), of_all = asked(0.0);
+          if (!figures.ok()) continue;  // no sample in this frame
+          energy += figures->energy;
+          num_asked += figures->samples.used - figures->footprint.num_behind;
+          num_on_guard += figures->footprint.num_behind - of_all->footprint.num_behind;
+        }
+        for (const LightMatrix& map : plan->maps) {
+          energy_of_maps += map.figures.energy;
+          num_used += map.figures.samples.used;
+        }
+        SCOPED_TRACE(absl::StrCat("seed ", seed, ", ", light.name, ", guard ", guard_texels));
+        EXPECT_NEAR(plan->energy, energy, kTolerance * energy);
+        EXPECT_NEAR(energy_of_maps, energy, kTolerance * energy);
+        EXPECT_EQ(num_used, num_asked);
+        EXPECT_GT(num_used, 0);
+        ++num_cases;
       }
-      for (const LightMatrix& map : plan->maps) num_used += map.figures.samples.used;
-      EXPECT_NEAR(plan->energy, energy, kTolerance * energy)
-          << "seed " << seed << ", " << light.name;
-      EXPECT_GT(num_used, 0);
-      ++num_cases;
     }
   }
-  EXPECT_GE(num_cases, 5);
+  EXPECT_GE(num_cases, 10);
+  EXPECT_GT(num_on_guard, 0);
 }
 
 TEST(RaySum, PlanHoldsWhatMustBeHeldInEveryFrame) {
@@ -116,11 +134,13 @@ TEST(RaySum, PlanHoldsWhatMustBeHeldInEveryFrame) {
     const PlanWalk walk(seed, kNumFrames, kStep);
     for (const Light& light : walk.lights) {
       for (const int most_samples : {kAllSamples, 200}) {
-        const PlanOptions options = OptionsOf(4);
+        const double guard_texels = most_samples == kAllSamples ? 0.0 : kGuard;
+        const PlanOptions options = OptionsOf(4, guard_texels);
         const auto plan = FitRaySum(SumOfWalk(walk, light, options.fit, most_samples), options);
         if (!plan.ok()) continue;
         for (const Surfaces& surfaces : walk.frames) {
-          const Unserved unserved = CountUnserved(surfaces, light, PlanOf(*plan));
+          const Unserved unserved =
+              CountUnserved(surfaces, light, PlanOf(*plan), options.fit.cover, guard_texels);
           EXPECT_EQ(unserved.all(), 0) << "seed " << seed << ", " << light.name;
           num_needed += unserved.num_needed;
         }

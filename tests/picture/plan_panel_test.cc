@@ -176,6 +176,7 @@ TEST(FitPage, HasRowsOfPlansAndOfLightsWithoutAnAnswer) {
   std::vector<FitComparison> lights = {ComparePlan(at.surfaces, at.sun, at.options)};
   PictureOptions options;
   options.maps = "up to 4 maps";
+  options.has_plans = true;
   const absl::StatusOr<Canvas> one = DrawPicture(at.surfaces, lights, options, Typeface::Find());
   ASSERT_THAT(one, IsOk());
   lights.push_back(FailedFitComparison(Light::Directional("rim", {0, 0, -1}),

@@ -19,6 +19,7 @@ using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using ::testing::SizeIs;
 
 using Cells = std::vector<std::string>;
 
@@ -85,7 +86,10 @@ TEST(PlanReport, HasNoFiguresOfWhatThereIsNot) {
   EXPECT_THAT(RowsOf(text, "lamp"),
               ElementsAre(ElementsAre(
                   "lamp", "dark", "2", "-", "-", "1.00", "-", "-", "-", "-", "3.00", "12.0")));
-  EXPECT_THAT(text, HasSubstr("no matrix, see below"));
+  EXPECT_THAT(text, HasSubstr("no plan, see below"));
+  const std::string report = PlanReportText("a.exr", Readback(), PlanOptions(), {failed});
+  EXPECT_THAT(RowsOf(report, "key"), SizeIs(2));
+  EXPECT_THAT(report, Not(HasSubstr("no matrix")));
 }
 
 TEST(PlanReport, SaysTheSizesAndWhatTheyAreComparedWith) {

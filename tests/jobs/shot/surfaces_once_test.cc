@@ -56,6 +56,18 @@ TEST(SurfacesOnce, ForEachFrameOfAShot) {
     const int64_t num_passes = (NumSurfacesFound() - before_whole) / kNumFrames;
     EXPECT_GE(num_passes, 2);               // summed up, judged
     EXPECT_LE(num_passes, 3 + job.rounds);  // and weighed anew in each round
+
+    // Plans for it come of what the other modes have read, and are judged.
+    job.modes = {true, true, true};
+    job.plans.emplace();
+    job.plans->plan.max_maps = 2;
+    job.plans->plan.texels = 300 * 200;
+    ASSERT_THAT(MakeShotFolders(job), IsOk());
+    ShotContext of_plans(job);
+    const int64_t before_plans = NumSurfacesFound();
+    ASSERT_THAT(RunShot(&of_plans), IsOk());
+    EXPECT_EQ(NumSurfacesFound() - before_plans, 2 * kNumFrames);
+    EXPECT_THAT(ReadFitResultJson(of_plans.paths.Shot()), IsOk());
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -39,17 +40,14 @@ double RandomWarp(const LloydView& view, Random& random) {
   return view.near * random.LogUniform(1.0, 1e2 * view.far / view.near);
 }
 
-TEST(LloydError, PlacesFillTheMap) {
-  Random random(1);
-  for (int i = 0; i < 200; ++i) {
-    const LloydView view = RandomView(random);
-    const double warp = RandomWarp(view, random);
-    const double side = view.far * std::tan(view.half_angle_rad);
-    EXPECT_NEAR(WarpedPlace(view, warp, 0.0, view.near).y(), 0.0, 1e-9);
-    EXPECT_NEAR(WarpedPlace(view, warp, 0.0, view.far).y(), 1.0, 1e-9);
-    EXPECT_NEAR(WarpedPlace(view, warp, side, view.far).x(), 1.0, 1e-9);
-    EXPECT_NEAR(WarpedPlace(view, warp, -side, view.far).x(), 0.0, 1e-9);
-  }
+// (5), (6) Place in the map, 0 ... 1 each, of what lies x aside at depth z. Finite warps only.
+Eigen::Vector2d WarpedPlace(const LloydView& view, double warp, double x, double z) {
+  const double far = warp + view.far - view.near, depth = warp + z - view.near;
+  // The warp's own half angle: it is as wide as the view at the far plane.
+  const double two_tan = view.far / far * 2.0 * std::tan(view.half_angle_rad);
+  const double length = far - warp;
+  return {x / (depth * two_tan) + 0.5,
+          (far + warp) / (2.0 * length) - far * warp / (depth * length) + 0.5};
 }
 
 // (7), (8) from the derivatives of (5), (6).
@@ -106,12 +104,6 @@ TEST(LloydError, EtaRunsFromNoWarpToThatOfPerspectiveMaps) {
     EXPECT_EQ(WarpOfEta(view, -1.0), kNoWarp);
     EXPECT_NEAR(WarpOfEta(view, 0.0) / LispsmWarp(view), 1.0, kRounding);
     EXPECT_NEAR(WarpOfEta(view, 1.0) / view.near, 1.0, kRounding);
-    EXPECT_NEAR(EtaOfWarp(view, kNoWarp), -1.0, kRounding);
-    for (int k = 0; k < 10; ++k) {
-      const double eta = random.Uniform(-0.999, 1.0);
-      // Of views as shallow as 1.1 to 1 differences of errors keep fewer digits.
-      EXPECT_NEAR(EtaOfWarp(view, WarpOfEta(view, eta)), eta, 1e-10);
-    }
   }
 }
 
@@ -184,7 +176,6 @@ TEST(LloydError, LogarithmicTexelsAreAsWideAsDepthDemands) {
       return std::log(depth / view.near) / std::log(view.far / view.near);
     };
     const double width = 2.0 * step / (place(z + step) - place(z - step));
-    EXPECT_NEAR(width / LogarithmicBeamWidth(view, z), 1.0, 1e-6);
     EXPECT_NEAR(width / ImageBeamWidth(view, z) / LogarithmicZError(view), 1.0, 1e-6);
   }
 }

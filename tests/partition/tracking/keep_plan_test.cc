@@ -180,9 +180,11 @@ TEST(PlanKeeper, HoldsWhatFellOutAndLeavesTheOtherMapsAlone) {
       const PlanKeeper keeper(*view, *rays, before, options, fit);
       KeptMaps maps = before;
       if (keeper.HeldBy(maps).HoldsAll()) continue;
-      if (!keeper.HoldAll(&maps)) continue;
+      const auto held = keeper.HoldAll(&maps);
+      if (!held.has_value()) continue;
       ++num_held;
-      EXPECT_TRUE(keeper.HeldBy(maps).HoldsAll());
+      EXPECT_TRUE(held->HoldsAll());
+      EXPECT_EQ(held->held_by, keeper.HeldBy(maps).held_by);
       for (size_t k = 0; k < maps.size(); ++k) {
         const bool is_same = maps[k].map_from_world == before[k].map_from_world;
         EXPECT_EQ(is_same, maps[k].action == TrackerAction::kKept);
@@ -210,7 +212,7 @@ TEST(PlanKeeper, LowersTheEnergyToWhatWasAskedOrLeavesTheMapsAsTheyAre) {
       const KeptMaps before = MapsOf(at.view, *plan);
       const PlanKeeper keeper(at.view, at.rays, before, options, at.fit);
       const double energy = keeper.costs().EnergyOf(before);
-      const double tight = keeper.TightEnergyOf(before);
+      const double tight = keeper.TightEnergyOf(before, keeper.HeldBy(before));
       EXPECT_LT(tight, energy);
       KeptMaps maps = before;
       const double most = 0.5 * (energy + tight);

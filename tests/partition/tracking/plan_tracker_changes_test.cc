@@ -4,14 +4,17 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <stop_token>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "base/stop.h"
+#include "optimizer/sizing/map_sizes.h"
 #include "partition/tracking/plan_tracker.h"
 #include "tests/partition/tracking/plan_walk.h"
 #include "tests/partition/tracking/tracked_plan.h"
@@ -54,8 +57,9 @@ TEST(PlanTracker, ChoosesTheBorderByForecastAtUpdates) {
   const auto spot = [&](bool is_dark) {
     SyntheticReadback result = image;
     for (int i = 0; i < image.camera.width * image.camera.height; ++i) {
-      const double x = (i % image.camera.width + 0.5) / image.camera.width;
-      const double y = (i / image.camera.width + 0.5) / image.camera.height;
+      const int column = i % image.camera.width, row = i / image.camera.width;
+      const double x = (column + 0.5) / image.camera.width;
+      const double y = (row + 0.5) / image.camera.height;
       result.shadow_bits[i] = (std::hypot(x - 0.5, y - 0.75) < 0.12) != is_dark ? ~0u : 0u;
     }
     return result;
@@ -115,6 +119,52 @@ TEST(PlanTracker, GoesOnWithOtherNumbersAndSizesOfMaps) {
   const TrackedPlan equal = track(5);
   EXPECT_TRUE(equal.is_new);
   for (const LightMatrix& map : equal.plan.maps) EXPECT_EQ(map.map.width, 96);
+}
+
+// Under a camera that stands still a plan is kept until a map's size is none of those that may be.
+TEST(PlanTracker, KeepsAPlanAsLongAsItsSizesKeepTheRules) {
+  const PlanWalk walk(1, 1, 0.0);
+  for (const Light& light : walk.lights) {
+    PlanTrackerOptions options = OptionsOf(3, 0.5);
+    PlanTracker tracker(light, options);
+    const auto track = [&](const std::optional<MapSizeRules>& sizes) {
+      options.plan.sizes = sizes;
+      tracker.set_options(options);
+      auto tracked = tracker.Update(walk.frames[0]);
+      EXPECT_THAT(tracked, IsOk());
+      for (const LightMatrix& map : tracked->plan.maps) {
+        EXPECT_TRUE(!sizes.has_value() || KeepsRules(map.map, *sizes));
+      }
+      return *std::move(tracked);
+    };
+    const auto rules = [](int multiple, int min_side, int max_side) {
+      MapSizeRules sizes;
+      sizes.multiple = multiple;
+      sizes.min_side = min_side;
+      sizes.max_side = max_side;
+      return sizes;
+    };
+    track(std::nullopt);
+    EXPECT_TRUE(track(rules(32, 32, 16384)).is_new);  // they were of any size
+    EXPECT_FALSE(track(rules(32, 32, 16384)).is_new);
+    EXPECT_FALSE(track(rules(16, 16, 4096)).is_new);
+    const TrackedPlan any = track(std::nullopt);
+    EXPECT_FALSE(any.is_new);
+    int longest = 0, shortest = kMaxMapSide;
+    for (const LightMatrix& map : any.plan.maps) {
+      longest = std::max({longest, map.map.width, map.map.height});
+      shortest = std::min({shortest, map.map.width, map.map.height});
+    }
+    EXPECT_FALSE(track(rules(32, shortest, longest)).is_new);
+    EXPECT_TRUE(track(rules(32, 32, longest - 32)).is_new);
+    EXPECT_TRUE(track(rules(28, 28, 16384)).is_new);
+    MapSizeRules powers;
+    powers.powers_of_two = true;
+    powers.min_side = 32;
+    EXPECT_TRUE(track(powers).is_new);
+    EXPECT_FALSE(track(powers).is_new);
+    EXPECT_TRUE(track(rules(32, 96, 16384)).is_new);
+  }
 }
 
 TEST(PlanTracker, StartsAnewWhenTheLightMoves) {
