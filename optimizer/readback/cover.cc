@@ -256,7 +256,7 @@ absl::StatusOr<RayCover> CoverReceivers(
   if (absl::Status status = CheckStop(light); !status.ok()) return status;
   std::optional<Eigen::Matrix3d> normalized = NormalizeRays(frame_from_ray, &cover.hull);
   if (!normalized.has_value() && !covers_all) {
-    // The centre of a single pixel to cover, or of a row of them: what is around them has area.
+    // A single pixel to cover, or a row of them: what is around their centres has area.
     cover.hull = HullOfSurroundings(covered, frame_from_ray * ray_from_screen);
     if (!cover.hull.empty()) normalized = NormalizeRays(frame_from_ray, &cover.hull);
   }

@@ -94,10 +94,11 @@ Polygon ExactHull(const CoveredSurfaces& covered, const Matrix34d& frame_from_sc
 }
 
 Polygon HullOfSurroundings(const CoveredSurfaces& covered, const Matrix34d& frame_from_screen) {
-  ScratchVector<Eigen::Vector2d> corners;
+  ScratchVector<Eigen::Vector2d> centres, corners;
   bool all_in_front = true;
   ForEachTile(covered.tiles.grids[0], [&](const DepthTile& tile) {
     covered.ForEach(tile, [&](const Eigen::Vector4d& centre) {
+      centres.emplace_back(centre.head<2>());
       for (const double dx : {-1.0, 1.0}) {
         for (const double dy : {-1.0, 1.0}) {
           const Eigen::Vector3d ray =
@@ -108,7 +109,8 @@ Polygon HullOfSurroundings(const CoveredSurfaces& covered, const Matrix34d& fram
       }
     });
   });
-  return all_in_front ? ConvexHull(corners) : Polygon();
+  const bool is_row = Area(ConvexHull(centres)) == 0.0;  // exact: centres are halves
+  return is_row && all_in_front ? ConvexHull(corners) : Polygon();
 }
 
 }  // namespace lightfit

@@ -15,8 +15,9 @@ namespace lightfit {
 // a StopScope says so.
 Polygon ExactHull(const CoveredSurfaces& covered, const Matrix34d& frame_from_screen);
 
-// The same with a pixel all around each centre, at its affine depth: an edge lies anywhere between
-// a centre and the next. For few, whose centres have no area. Empty where any has z <= 0.
+// The same with a pixel all around each centre, at its affine depth, as an edge lies anywhere
+// between a centre and the next: for one pixel or a row of them, whose centres have no area. Empty
+// where they are no row, but a surface that is edge-on to the light; and where any has z <= 0.
 Polygon HullOfSurroundings(const CoveredSurfaces& covered, const Matrix34d& frame_from_screen);
 
 }  // namespace lightfit
