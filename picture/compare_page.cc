@@ -141,7 +141,11 @@ class Page {
     const int64_t count = CountOf(row, options_.bias);
     std::string caption = absl::StrCat(count, count == 1 ? " wrong pixel" : " wrong pixels");
     const int num_maps = NumMaps(row.drawn);
-    if (num_maps > 1) absl::StrAppend(&caption, ", ", num_maps, " maps");
+    const bool has_other_texels = row.drawn.has_other_texels;
+    if (num_maps > 1 || has_other_texels) {
+      absl::StrAppend(&caption, ", ", num_maps, num_maps == 1 ? " map" : " maps");
+    }
+    if (has_other_texels) absl::StrAppend(&caption, " of ", NumTexels(row.drawn), " texels");
     if (row.border() == Border::kDark) caption += ", dark border";
     if (!is_ours && HasImage(light_.lightfit())) {
       const std::optional<double> ratio =
