@@ -150,7 +150,7 @@ void CheckMatrixNames(const CompareFlags& flags) {
   const std::optional<PlanOptions> plan = PlanOptionsOf(flags.fit.plan, flags.fit.options);
   if (!plan.has_value()) return;
   CompareOptions options;
-  SetPlan(*plan, &options);
+  options.plan = *plan;  // not SetPlan(): nobody has looked at the sizes yet
   const std::vector<std::string> rows = RowNames(options);
   for (const MatrixFlag& matrix : flags.matrices) {
     if (std::find(rows.begin(), rows.end(), matrix.name) == rows.end()) continue;
