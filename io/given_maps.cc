@@ -191,7 +191,7 @@ absl::StatusOr<std::map<std::string, GivenMaps>> MapsOfResult(absl::string_view 
 // Errors say which map is not one of the light.
 absl::Status CheckIsOfLight(const Plan& plan, const Light& light) {
   for (size_t k = 0; k < plan.maps.size(); ++k) {
-    const absl::Status status = MapFromRay(plan.maps[k].map_from_world, light).status();
+    absl::Status status = MapFromRay(plan.maps[k].map_from_world, light).status();
     if (status.ok()) continue;
     if (plan.maps.size() == 1) return status;
     return absl::Status(

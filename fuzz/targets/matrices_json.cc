@@ -35,8 +35,9 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
                 "a file of matrices has one");
   if (given->for_every_light.has_value()) fuzz::PromiseMaps(*given->for_every_light);
   for (const auto& [light, maps] : given->by_light) fuzz::PromiseMaps(maps);
-  for (const Light& light :
-       {Light::Directional("sun", {-1, -1.3, 0.4}), Light::Point("lamp", {0.5, 3.5, 1.0})}) {
+  // Those of the seeds.
+  for (const Light& light : {Light::Directional("sun", {-0.9335726, -0.2373277, -0.2685473}),
+                             Light::Point("key", {8.946166, -0.982908, 5.47775})}) {
     const absl::StatusOr<GivenMaps> maps = given->Of(light);
     fuzz::PromiseOkOrError(maps.status());
     if (maps.ok()) {
