@@ -141,11 +141,7 @@ class Page {
     const int64_t count = CountOf(row, options_.bias);
     std::string caption = absl::StrCat(count, count == 1 ? " wrong pixel" : " wrong pixels");
     const int num_maps = NumMaps(row.drawn);
-    const bool has_other_texels = row.drawn.has_other_texels;
-    if (num_maps > 1 || has_other_texels) {
-      absl::StrAppend(&caption, ", ", num_maps, num_maps == 1 ? " map" : " maps");
-    }
-    if (has_other_texels) absl::StrAppend(&caption, " of ", NumTexels(row.drawn), " texels");
+    if (num_maps > 1) absl::StrAppend(&caption, ", ", num_maps, " maps");
     if (row.border() == Border::kDark) caption += ", dark border";
     if (!is_ours && HasImage(light_.lightfit())) {
       const std::optional<double> ratio =
@@ -153,7 +149,11 @@ class Page {
                   static_cast<double>(CountOf(light_.lightfit(), options_.bias)));
       if (ratio.has_value()) absl::StrAppend(&caption, ", ", FigureText(*ratio), " x lightfit");
     }
-    Header(row.name, caption, is_ours ? kGainColor : kTextColor);
+    std::string title = row.name;
+    if (row.drawn.has_other_texels) {
+      absl::StrAppend(&title, " (", NumTexels(row.drawn), " texels)");
+    }
+    Header(title, caption, is_ours ? kGainColor : kTextColor);
     DrawShadows(
         ShadowsOf(row, options_.bias),
         num_maps > 1 ? AskedMaps(row.drawn, light_.light, stage_.screen) : std::vector<int>());
