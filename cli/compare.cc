@@ -103,7 +103,7 @@ CompareHeading HeadingOf(const CompareInputs& inputs) {
   heading.phases = inputs.options.judge.phases;
   const std::optional<PlanOptions>& plan = inputs.options.plan;
   heading.fit = plan.has_value() ? PlanMethodText(*plan) : MethodText(inputs.options.fit);
-  heading.has_plans = plan.has_value();
+  heading.has_plans = HasPlans(inputs.options);
   heading.next = inputs.next_title;
   return heading;
 }
@@ -125,11 +125,8 @@ absl::Status WritePicture(const CompareFlags& flags,
   options.keep_images = true;
   options.next = nullptr;
   const LightComparison comparison = CompareMaps(inputs.stage, inputs.lights[light], options);
-  const ComparePictureOptions picture = {inputs.title,
-                                         SizeText(options),
-                                         options.plan.has_value(),
-                                         options.judge.phases,
-                                         flags.picture_bias};
+  const ComparePictureOptions picture = {
+      inputs.title, SizeText(options), HasPlans(options), options.judge.phases, flags.picture_bias};
   return WritePng(DrawComparePicture(inputs.stage, comparison, picture, typeface),
                   flags.picture_path);
 }

@@ -180,8 +180,7 @@ absl::StatusOr<CompareInputs> ReadCompareInputs(const CompareFlags& flags) {
   const std::optional<PlanOptions> plan = PlanOptionsOf(flags.fit.plan, flags.fit.options);
   if (plan.has_value()) SetPlan(*plan, &inputs.options);
   for (const MatrixFlag& matrix : flags.matrices) {
-    absl::StatusOr<GivenMatrices> given =
-        ReadGivenMatrices(matrix.name, matrix.path, inputs.options.map);
+    absl::StatusOr<GivenSetUp> given = ReadGivenMaps(matrix.name, matrix.path, inputs.options.map);
     if (!given.ok()) return given.status();
     inputs.options.given.push_back(*std::move(given));
   }

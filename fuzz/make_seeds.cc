@@ -300,6 +300,12 @@ class Seeds {
     const v1::TrackResult tracked = session.Update(frame, yard_.file.View(), {});
     SaveJson("result_json/track", tracked.result());
     SaveJson("matrices_json/result", tracked.result());
+    v1::FitRequest plan = fit;
+    plan.clear_map();
+    *plan.mutable_plan_options() = SmallPlan();
+    const v1::FitResult plans = AnswerFit(plan, CallContext()).value();
+    SaveJson("matrices_json/plan", plans);
+    SaveJson("result_json/plan", plans);
     v1::AllocateRequest allocate = RequestOf<v1::AllocateRequest>(yard_);
     allocate.set_budget_texels(1 << 17);
     SaveJson("result_json/allocation", AnswerAllocate(allocate, CallContext()).value());

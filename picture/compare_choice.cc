@@ -37,7 +37,7 @@ const ComparedRow* Rival(const LightComparison& light, Bias bias) {
   if (focused != nullptr && HasImage(*focused)) return focused;
   const ComparedRow* worst = nullptr;
   for (const ComparedRow& map : light.rows) {
-    if (!HasImage(map)) continue;
+    if (!HasImage(map) || &map == &light.lightfit()) continue;
     if (worst == nullptr || CountOf(map, bias) > CountOf(*worst, bias)) worst = &map;
   }
   return worst;

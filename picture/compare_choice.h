@@ -25,7 +25,7 @@ const std::vector<Lighting>& ShadowsOf(const ComparedRow& map, Bias bias);
 std::vector<const ComparedRow*> InOrder(const LightComparison& light, Bias bias);
 
 // The method that the crop sets lightfit against: the focused map, or where there is none the one
-// with most wrong pixels. Null when no method has an image.
+// with most wrong pixels. Null when no other method has an image.
 const ComparedRow* Rival(const LightComparison& light, Bias bias);
 
 // Where the rival has most wrong pixels over lightfit's, in an image of width x height.

@@ -149,7 +149,11 @@ class Page {
                   static_cast<double>(CountOf(light_.lightfit(), options_.bias)));
       if (ratio.has_value()) absl::StrAppend(&caption, ", ", FigureText(*ratio), " x lightfit");
     }
-    Header(row.name, caption, is_ours ? kGainColor : kTextColor);
+    std::string title = row.name;
+    if (row.drawn.has_other_texels) {
+      absl::StrAppend(&title, " (", NumTexels(row.drawn), " texels)");
+    }
+    Header(title, caption, is_ours ? kGainColor : kTextColor);
     DrawShadows(
         ShadowsOf(row, options_.bias),
         num_maps > 1 ? AskedMaps(row.drawn, light_.light, stage_.screen) : std::vector<int>());

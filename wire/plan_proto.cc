@@ -1,6 +1,7 @@
 #include "wire/plan_proto.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -87,13 +88,35 @@ absl::StatusOr<Plan> PlanFromProto(const v1::Plan& proto, absl::string_view fiel
   return plan;
 }
 
+absl::StatusOr<double> GuardTexelsFromProto(const v1::Plan& proto, absl::string_view field) {
+  const double guard_texels = proto.guard_texels();
+  if (!(guard_texels >= 0.0)) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("%s.guard_texels = %g, want 0 or more", field, guard_texels));
+  }
+  for (const v1::PlanMap& map : proto.maps()) {
+    const int least_side = std::min(map.map().width(), map.map().height());
+    if (2.0 * guard_texels < least_side) continue;
+    return absl::InvalidArgumentError(
+        absl::StrFormat("%s.guard_texels = %g leaves nothing of maps[%d] of %dx%d texels, want "
+                        "less than %g",
+                        field,
+                        guard_texels,
+                        map.index(),
+                        map.map().width(),
+                        map.map().height(),
+                        0.5 * least_side));
+  }
+  return guard_texels;
+}
+
 absl::Status CheckHasOneMap(const v1::LightResult& light) {
   if (light.plan().maps_size() <= 1) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrFormat(
-      "light \"%s\": has a plan of %d maps, and plans cannot be given yet; want one "
-      "matrix, as lightfit fit finds without --maps",
-      light.name(),
-      light.plan().maps_size()));
+  return absl::InvalidArgumentError(
+      absl::StrFormat("light \"%s\": has a plan of %d maps, and takes one matrix here; want one as "
+                      "lightfit fit finds it without --maps",
+                      light.name(),
+                      light.plan().maps_size()));
 }
 
 v1::PlanOptions PlanOptionsToProto(const PlanOptions& options) {

@@ -27,6 +27,9 @@ absl::StatusOr<v1::Plan> PlanToProto(const LightPlan& plan,
 // the plan in errors.
 absl::StatusOr<Plan> PlanFromProto(const v1::Plan& proto, absl::string_view field);
 
+// Of a plan that PlanFromProto() reads: >= 0, and something is left of every map.
+absl::StatusOr<double> GuardTexelsFromProto(const v1::Plan& proto, absl::string_view field);
+
 // InvalidArgument where the light has several maps: for who takes one matrix of each light, and
 // must not take one of several for it.
 absl::Status CheckHasOneMap(const v1::LightResult& light);

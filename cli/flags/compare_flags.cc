@@ -32,15 +32,17 @@ constexpr char kExamples[] =
     "      --camera-step 0.1,0,0,0.5\n"
     "  lightfit compare sponza.glb --camera 3.5,1.7,-4.2:-9,2.2,-4.4:55 --light sun=sun:1,-3,0.5 "
     "\\\n"
-    "      --maps 4 --texels 1024x1024\n"
+    "      --maps 4 --texels 1024x1024 --matrix kept=plan.json\n"
     "\n"
     "Units: positions in world units, images in pixels, maps in texels. A read-back has no true\n"
     "shadows to count wrong or flipped pixels by: it gives energies, footprints and, with\n"
     "--next-readback, drift.\n"
-    "--matrix: a result of lightfit fit --json, or {\"map_from_world\": [16 numbers], \"map\":\n"
-    "{\"width\": 1024, \"height\": 1024}}, or {\"clip_from_world\": [16 numbers], \"clip\": "
-    "\"opengl\"};\n"
-    "with \"border\": \"dark\" where look-ups outside the map find shadow.";
+    "--matrix: a result of lightfit fit --json (with --maps: its plans), or {\"map_from_world\":\n"
+    "[16 numbers], \"map\": {\"width\": 1024, \"height\": 1024}}, or {\"clip_from_world\":\n"
+    "[16 numbers], \"clip\": \"opengl\"}; with \"border\": \"dark\" where look-ups outside the\n"
+    "map find shadow. Single matrices are taken for maps of the size compared. Plans keep the\n"
+    "sizes, border and guard of their file; a note says where their texels are not those of one\n"
+    "map here.";
 
 // Refuses the word while parsing when `parse` does.
 template <typename Parse, typename Target>
@@ -76,7 +78,7 @@ void DeclareMatrices(CLI::App* app, CompareFlags* flags) {
              flags->matrices.push_back(std::move(matrix));
            }
          },
-         "Matrices from elsewhere as a further method (may be repeated)")
+         "Matrices or plans from elsewhere as a further method (may be repeated)")
       ->type_name("NAME=FILE.json")
       ->expected(1)
       ->take_all()
@@ -149,7 +151,7 @@ void CheckMatrixNames(const CompareFlags& flags) {
   const std::optional<PlanOptions> plan = PlanOptionsOf(flags.fit.plan, flags.fit.options);
   if (!plan.has_value()) return;
   CompareOptions options;
-  SetPlan(*plan, &options);
+  options.plan = *plan;  // not SetPlan(): nobody has looked at the sizes yet
   const std::vector<std::string> rows = RowNames(options);
   for (const MatrixFlag& matrix : flags.matrices) {
     if (std::find(rows.begin(), rows.end(), matrix.name) == rows.end()) continue;

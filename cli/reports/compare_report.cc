@@ -53,13 +53,11 @@ constexpr char kTotalLegend[] =
     "lights\n"
     "without a map of the method.\n";
 constexpr char kPlanLegend[] =
-    "Maps, texels: what the method draws for the light, at most the texels of one map in all. A "
-    "pixel asks\n"
-    "the finest map that holds it, or the one of the method's own rule, and finds the border where "
-    "there is\n"
-    "none. Energy and footprints are those of the map asked; edge pixels that ask none of several "
-    "are in\n"
-    "neither. Foretold: as if all methods asked the finest.\n";
+    "Maps, texels: what the method draws for the light, at most the texels of one map in all;\n"
+    "plans from files (--matrix) keep their own. A pixel asks the finest map that holds it, or\n"
+    "the one of the method's own rule, and finds the border where there is none. Energy and\n"
+    "footprints are those of the map asked; edge pixels that ask none of several are in neither.\n"
+    "Foretold: as if all methods asked the finest.\n";
 
 std::string RatioText(const std::optional<double>& ratio) {
   return ratio.has_value() ? absl::StrCat(FigureText(*ratio), "x") : "-";
@@ -196,7 +194,10 @@ std::string TotalsText(const CompareHeading& heading, absl::Span<const LightComp
   const bool has_truth = HasTruth(heading), has_crawl = HasCrawl(heading);
   Table table;
   table.AddColumn("", "method");
-  if (heading.has_plans) table.AddColumn("maps", "mean");
+  if (heading.has_plans) {
+    table.AddColumn("maps", "mean");
+    table.AddColumn("texels", "mean");
+  }
   if (has_truth) {
     for (const char* bias : {"wrong pixels, ideal bias", "wrong pixels, practical bias"}) {
       for (const char* name : {"total", "ratio", "mean", "better"}) {
@@ -213,7 +214,9 @@ std::string TotalsText(const CompareHeading& heading, absl::Span<const LightComp
   for (const MethodTotals& totals : TotalsOf(lights)) {
     std::vector<std::string> cells = {totals.name};
     if (heading.has_plans) {
-      cells.push_back(totals.num_lights > 0 ? FigureText(totals.mean_maps) : "-");
+      const bool has_maps = totals.num_lights > 0;
+      cells.push_back(has_maps ? FigureText(totals.mean_maps) : "-");
+      cells.push_back(has_maps ? absl::StrFormat("%.0f", totals.mean_texels) : "-");
     }
     if (has_truth) {
       AppendPixelCells(totals.ideal, &cells);

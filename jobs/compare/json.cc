@@ -139,8 +139,7 @@ v1::Comparison ComparisonToProto(const std::string& source,
     *proto.mutable_plan_options() = PlanOptionsToProto(*options.plan);
   }
   for (const LightComparison& light : lights) {
-    *proto.add_lights() =
-        LightComparisonToProto(light, stage.has_truth(), options.plan.has_value());
+    *proto.add_lights() = LightComparisonToProto(light, stage.has_truth(), HasPlans(options));
   }
   for (const MethodTotals& totals : TotalsOf(lights)) *proto.add_totals() = TotalsToProto(totals);
   return proto;

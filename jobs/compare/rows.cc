@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include "absl/functional/function_ref.h"
@@ -15,6 +16,7 @@
 #include "jobs/schemes/shipped.h"
 #include "methods/method.h"
 #include "optimizer/figures/foretell.h"
+#include "optimizer/sizing/map_sizes.h"
 #include "partition/evaluate_plan.h"
 
 namespace lightfit {
@@ -66,12 +68,27 @@ absl::StatusOr<SchemeMaps> SetUpIn(const LitStage& frame, const Scheme& scheme) 
   return scheme.set_up({frame.stage->view, *frame.surfaces, frame.light});
 }
 
-Scheme GivenScheme(const GivenMatrices& given, MapSize map) {
+// Of a plan that keeps its own sizes: empty where they come to what methods may have.
+std::string SizeNote(const Plan& plan, MapSize map) {
+  const int64_t texels = NumTexels(plan), budget = TexelsOf(map);
+  if (texels == budget) return "";
+  return absl::StrFormat(
+      "the file's own sizes: %d map%s of %d texels in all, and not the %d of one "
+      "map here",
+      plan.maps.size(),
+      plan.maps.size() == 1 ? "" : "s",
+      texels,
+      budget);
+}
+
+Scheme GivenScheme(const GivenSetUp& given, MapSize map) {
   return {given.name, [&given, map](const SchemeInput& input) -> absl::StatusOr<SchemeMaps> {
-            const absl::StatusOr<GivenMatrix> matrix = given.Of(input.light.name);
-            if (!matrix.ok()) return matrix.status();
-            return SchemeMaps{
-                PlanOfOneMap(input.light.name, matrix->map_from_world, map, matrix->border)};
+            absl::StatusOr<GivenMaps> maps = given.Of(input.light);
+            if (!maps.ok()) return maps.status();
+            SchemeMaps drawn = {std::move(maps->plan), maps->guard_texels};
+            drawn.note = SizeNote(*PlanOf(drawn), map);
+            drawn.has_other_texels = !drawn.note.empty();
+            return drawn;
           }};
 }
 
@@ -86,7 +103,7 @@ std::vector<Scheme> SchemesOf(const CompareOptions& options) {
   for (const Method method : AllMethods()) schemes.push_back(MethodScheme(method, budget));
   schemes.push_back(one_map(kAsPublishedName, FitOptions::AsPublished(options.fit)));
   schemes.push_back(one_map(kLineName, LineOptions(options.fit)));
-  for (const GivenMatrices& given : options.given) {
+  for (const GivenSetUp& given : options.given) {
     schemes.push_back(GivenScheme(given, options.map));
   }
   if (!options.plan.has_value()) {
@@ -201,6 +218,17 @@ void SetPlan(const PlanOptions& plan, CompareOptions* options) {
   options->plan = plan;
   options->fit = plan.fit;
   options->map = OneMapSize(plan);
+}
+
+bool HasPlans(const CompareOptions& options) {
+  if (options.plan.has_value()) return true;
+  for (const GivenSetUp& given : options.given) {
+    for (const auto& [light, maps] : given.by_light) {
+      const Plan& plan = maps.plan;
+      if (plan.maps.size() > 1 || NumTexels(plan) != TexelsOf(options.map)) return true;
+    }
+  }
+  return false;
 }
 
 const ComparedRow* LightComparison::Find(absl::string_view name) const {

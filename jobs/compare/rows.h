@@ -6,10 +6,10 @@
 //       crawl.
 //
 // Rows, in this order: the published set-ups of methods/ by their names; "as-published", Chong and
-// Gortler's Algorithm 1 to the letter; "line", the same in normalised rays; matrices given from
-// outside; where several maps are asked for "one map", our own, then the published plans and those
-// that engines ship (jobs/schemes), all of as many texels; "lightfit", the fit that the options ask
-// for. A method that fails has a row that says why.
+// Gortler's Algorithm 1 to the letter; "line", the same in normalised rays; matrices and plans
+// given from outside; where several maps are asked for "one map", our own, then the published plans
+// and those that engines ship (jobs/schemes), all of as many texels; "lightfit", the fit that the
+// options ask for. A method that fails has a row that says why.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@
 #include "geometry/border.h"
 #include "geometry/light.h"
 #include "geometry/map_size.h"
-#include "io/given_matrices.h"
+#include "io/given_maps.h"
 #include "jobs/compare/crawl.h"
 #include "jobs/compare/stage.h"
 #include "jobs/schemes/scheme.h"
@@ -52,7 +52,7 @@ struct CompareOptions {
   // map is moved by a part of a texel, which hides differences between methods.
   JudgeOptions judge = {.phases = 4};
 
-  std::vector<GivenMatrices> given;
+  std::vector<GivenSetUp> given;  // plans among them may have more texels, or fewer
   bool keep_images = false;
 
   // Where crawl is measured to, by setting up every method there as well; null: nowhere. Must
@@ -67,10 +67,17 @@ struct CompareOptions {
 // For plans of several maps.
 void SetPlan(const PlanOptions& plan, CompareOptions* options);
 
+// Whether a row may have several maps, or other texels than `map`: ours, or one that was given.
+bool HasPlans(const CompareOptions& options);
+
 struct ComparedRow {
   std::string name;
   absl::Status status;  // why there are no maps, or why they cannot be used for this light
-  std::string note;     // empty, or how the method fell back, or why `figures` are absent
+
+  // Empty, or how the method fell back, why `figures` are absent, that a given plan has other
+  // texels than the methods beside it.
+  std::string note;
+
   SchemeMaps drawn;
 
   // What look-ups outside the maps find. Of a fit LightMatrix::border, of a matrix that was given

@@ -38,7 +38,7 @@ MethodTotals TotalsOfRow(absl::Span<const LightComparison> lights, size_t index)
   PixelSum ideal, practical;
   double log_energy_ratio = 0.0;
   std::vector<MapCrawl> crawls;
-  int64_t num_maps = 0;
+  int64_t num_maps = 0, num_texels = 0;
   for (const LightComparison& light : lights) {
     const ComparedRow& row = light.rows[index];
     const ComparedRow& lightfit = light.lightfit();
@@ -46,6 +46,7 @@ MethodTotals TotalsOfRow(absl::Span<const LightComparison> lights, size_t index)
     if (!row.status.ok() || !lightfit.status.ok()) continue;
     ++totals.num_lights;
     num_maps += NumMaps(row.drawn);
+    num_texels += NumTexels(row.drawn);
     if (row.border() == Border::kDark) ++totals.num_dark;
     if (row.wrong.has_value() && lightfit.wrong.has_value()) {
       ideal.Add(row.wrong->ideal, lightfit.wrong->ideal);
@@ -60,6 +61,7 @@ MethodTotals TotalsOfRow(absl::Span<const LightComparison> lights, size_t index)
   }
   if (totals.num_lights > 0) {
     totals.mean_maps = static_cast<double>(num_maps) / totals.num_lights;
+    totals.mean_texels = static_cast<double>(num_texels) / totals.num_lights;
   }
   totals.ideal = ideal.Result();
   totals.practical = practical.Result();

@@ -26,10 +26,11 @@ std::optional<double> EnergyRatio(const ComparedRow& row, const ComparedRow& lig
 
 struct MethodTotals {
   std::string name;
-  int num_lights = 0;      // with maps of this method and of lightfit: what is counted below
-  int num_failed = 0;      // without maps of this method
-  int num_dark = 0;        // of num_lights: whose maps have a dark border
-  double mean_maps = 0.0;  // over num_lights
+  int num_lights = 0;        // with maps of this method and of lightfit: what is counted below
+  int num_failed = 0;        // without maps of this method
+  int num_dark = 0;          // of num_lights: whose maps have a dark border
+  double mean_maps = 0.0;    // over num_lights
+  double mean_texels = 0.0;  // likewise, of all maps of a light
 
   // Wrong pixels; absent without truth or without lights.
   struct Pixels {

@@ -35,6 +35,9 @@ struct SchemeMaps {
 
   double guard_texels = 0.0;  // of a plan, see PlanLookUp; the others filter in ways of their own
   std::string note = "";      // empty, or how the scheme fell back
+
+  // In all than schemes may have: of plans that were made elsewhere.
+  bool has_other_texels = false;
 };
 
 // Null where the maps are no matrices.

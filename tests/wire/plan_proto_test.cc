@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <cmath>
 #include <limits>
 
 #include "tests/partition/random_plan.h"
@@ -167,6 +168,29 @@ TEST(PlanProto, SaysWhichFieldIsWrong) {
   refused([](v1::Plan& bad) { bad.mutable_maps(0)->clear_map_from_world(); },
           ".maps[0].map_from_world: m has 0 numbers");
   refused([](v1::Plan& bad) { bad.set_border(static_cast<v1::Border>(9)); }, ".border = 9");
+}
+
+TEST(PlanProto, AGuardLeavesSomethingOfEveryMap) {
+  Random random(15);
+  const Light light = RandomPlanLight(random);
+  v1::Plan plan = *PlanToProto(RandomLightPlan(light, random), light, {}, 0.0, true);
+  plan.mutable_maps(0)->mutable_map()->set_width(40);
+  plan.mutable_maps(0)->mutable_map()->set_height(30);
+  const auto guard_of = [&plan](double guard_texels) {
+    plan.set_guard_texels(guard_texels);
+    return GuardTexelsFromProto(plan, "plan");
+  };
+  ASSERT_THAT(guard_of(1.25), IsOk());
+  EXPECT_EQ(*guard_of(1.25), 1.25);
+  EXPECT_THAT(
+      guard_of(15.0),
+      StatusIs(absl::StatusCode::kInvalidArgument,
+               HasSubstr("plan.guard_texels = 15 leaves nothing of maps[0] of 40x30 texels, "
+                         "want less than 15")));
+  for (const double bad : {-0.5, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    EXPECT_THAT(guard_of(bad),
+                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("plan.guard_texels = ")));
+  }
 }
 
 TEST(PlanOptionsProto, ReadsBackAndSaysWhatIsWrong) {

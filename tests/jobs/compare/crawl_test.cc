@@ -123,7 +123,7 @@ TEST_F(CrawlTest, AMatrixThatIsKeptHasNone) {
   const NextFrame next = NextOf({0.1, 0.0, 0.0, 0.5, 0.0});
   options_.next = nullptr;
   const Eigen::Matrix4d kept = MatrixOf(*CompareMaps(stage_, kSun, options_).Find("lightfit"));
-  options_.given = {{"kept", GivenMatrix{kept}, {}}};
+  options_.given = {{"kept", GivenMaps{PlanOfOneMap("", kept, options_.map, Border::kLit)}, {}}};
   const LightComparison comparison = CompareTo(next);
   const ComparedRow& row = *comparison.Find("kept");
   ASSERT_TRUE(row.crawl.has_value()) << row.note;

@@ -31,6 +31,10 @@ constexpr double kSumTolerance = 1e-9;
 
 const Light kSun = Light::Directional("sun", {-1, -1.3, 0.4}, 5);
 
+GivenMaps OneMap(const Eigen::Matrix4d& map_from_world, MapSize map, Border border = Border::kLit) {
+  return {PlanOfOneMap("", map_from_world, map, border)};
+}
+
 class CompareMapsTest : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -51,7 +55,7 @@ class CompareMapsTest : public ::testing::Test {
 };
 
 TEST_F(CompareMapsTest, HasARowForEveryMethod) {
-  options_.given = {{"engine", GivenMatrix{Eigen::Matrix4d::Identity()}, {}}};
+  options_.given = {{"engine", OneMap(Eigen::Matrix4d::Identity(), options_.map), {}}};
   const LightComparison comparison = Compare(kSun);
   std::vector<std::string> names;
   for (const ComparedRow& map : comparison.rows) names.push_back(map.name);
@@ -205,7 +209,8 @@ TEST_F(CompareMapsTest, ImagesHoldTheWrongPixels) {
 
 TEST_F(CompareMapsTest, AGivenMatrixIsJudgedAsOurs) {
   const Eigen::Matrix4d ours = MatrixOf(Compare(kSun).lightfit());
-  options_.given = {{"copy", GivenMatrix{ours}, {}}, {"by name", std::nullopt, {{"sun", {ours}}}}};
+  options_.given = {{"copy", OneMap(ours, options_.map), {}},
+                    {"by name", std::nullopt, {{"sun", OneMap(ours, options_.map)}}}};
   const LightComparison comparison = Compare(kSun);
   for (const char* name : {"copy", "by name"}) {
     const ComparedRow& copy = *comparison.Find(name);
@@ -221,9 +226,10 @@ TEST_F(CompareMapsTest, RowsAreJudgedWithTheirBorder) {
   const Eigen::Matrix4d ours = MatrixOf(Compare(kSun).lightfit());
   Eigen::Matrix4d aside = ours;  // half of it outside
   aside.row(0) += 0.5 * options_.map.width * aside.row(3);
-  options_.given = {{"lit", GivenMatrix{aside}, {}},
-                    {"dark", GivenMatrix{aside, Border::kDark}, {}},
-                    {"dark by name", std::nullopt, {{"sun", {aside, Border::kDark}}}}};
+  options_.given = {
+      {"lit", OneMap(aside, options_.map), {}},
+      {"dark", OneMap(aside, options_.map, Border::kDark), {}},
+      {"dark by name", std::nullopt, {{"sun", OneMap(aside, options_.map, Border::kDark)}}}};
   const LightComparison comparison = Compare(kSun);
   const std::vector<Lighting> truth = TrueLighting(*caster_, stage_.screen, kSun);
   for (const ComparedRow& row : comparison.rows) {
@@ -250,9 +256,9 @@ TEST_F(CompareMapsTest, UnusableMatricesHaveARowThatSaysWhy) {
   const Eigen::Matrix4d of_sun = MatrixOf(Compare(kSun).lightfit());
   Eigen::Matrix4d not_finite = of_sun;
   not_finite(0, 0) = NAN;
-  options_.given = {{"other sun", GivenMatrix{of_sun}, {}},
-                    {"not finite", GivenMatrix{not_finite}, {}},
-                    {"none", std::nullopt, {{"moon", {of_sun}}}}};
+  options_.given = {{"other sun", OneMap(of_sun, options_.map), {}},
+                    {"not finite", OneMap(not_finite, options_.map), {}},
+                    {"none", std::nullopt, {{"moon", OneMap(of_sun, options_.map)}}}};
   const LightComparison comparison = Compare(Light::Directional("lamp", {1, -1, 0.3}));
   EXPECT_THAT(comparison.Find("other sun")->status,
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("do not leave the light")));
@@ -270,7 +276,7 @@ TEST_F(CompareMapsTest, AMatrixThatTurnsOverHasNoEnergy) {
   // w = 0 along a line of the floor: w becomes the map's own u, less than a quarter of its width.
   turned.row(3) = turned.row(0) - 0.5 * options_.map.width * turned.row(3);
   turned.row(0) = MatrixOf(Compare(kSun).lightfit()).row(3);
-  options_.given = {{"turned", GivenMatrix{turned}, {}}};
+  options_.given = {{"turned", OneMap(turned, options_.map), {}}};
   const LightComparison comparison = Compare(kSun);
   const ComparedRow& map = *comparison.Find("turned");
   ASSERT_THAT(map.status, IsOk());

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
 #include "jobs/compare/camera_step.h"
 #include "jobs/compare/json.h"
 #include "jobs/compare/rows.h"
@@ -29,6 +30,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using testing::IsOk;
+using ::testing::Not;
 using testing::StatusIs;
 
 const Light kSun = Light::Directional("sun", {-1, -1.3, 0.4}, 5);
@@ -283,18 +285,75 @@ TEST_F(ComparePlansTest, TheMessageHoldsTheMaps) {
   EXPECT_TRUE(MapsOf(message.lights(1), "paraboloids, drawn").paraboloids().is_rasterised());
 }
 
+// Drawn, judged, foretold, measured and followed as ours, whether ours is a plan or a single map.
+TEST_F(ComparePlansTest, AGivenPlanIsJudgedAsOurs) {
+  const absl::StatusOr<NextFrame> next = MakeNextFrame(stage_, StageOf({0.1, 0.02, 0, 0.5, 0.1}));
+  ASSERT_THAT(next, IsOk());
+  options_.next = &*next;
+  const LightComparison alone = CompareMaps(stage_, kLamp, options_);
+  const ComparedRow& ours = alone.lightfit();
+  const Plan& plan = *PlanOf(ours.drawn);
+  ASSERT_GT(plan.maps.size(), 1u);
+  options_.given = {{"copy", std::nullopt, {{"lamp", {plan, ours.drawn.guard_texels}}}}};
+  EXPECT_TRUE(HasPlans(options_));
+  const auto expect_as_ours = [&](const ComparedRow& copy) {
+    ASSERT_THAT(copy.status, IsOk());
+    EXPECT_EQ(NumMaps(copy.drawn), NumMaps(ours.drawn));
+    EXPECT_EQ(copy.drawn.guard_texels, ours.drawn.guard_texels);
+    EXPECT_EQ(copy.border(), ours.border());
+    EXPECT_EQ(copy.wrong->ideal, ours.wrong->ideal);
+    EXPECT_EQ(copy.wrong->practical, ours.wrong->practical);
+    EXPECT_EQ(copy.wrong->outside, ours.wrong->outside);
+    EXPECT_EQ(copy.foretold, ours.foretold);
+    // The plan is kept, where ours is fitted anew.
+    ASSERT_TRUE(copy.crawl.has_value()) << copy.note;
+    EXPECT_GT(copy.crawl->points.num_points, 0);
+  };
+  const LightComparison beside = CompareMaps(stage_, kLamp, options_);
+  expect_as_ours(*beside.Find("copy"));
+  EXPECT_EQ(beside.Find("copy")->figures->energy, ours.figures->energy);
+  options_.plan.reset();
+  EXPECT_TRUE(HasPlans(options_));
+  expect_as_ours(*CompareMaps(stage_, kLamp, options_).Find("copy"));
+  EXPECT_FALSE(HasPlans(CompareOptions()));
+}
+
+TEST_F(ComparePlansTest, AGivenPlanOfOtherTexelsSaysSo) {
+  const LightComparison alone = CompareMaps(stage_, kLamp, options_);
+  const Plan plan = *PlanOf(alone.lightfit().drawn);
+  const std::string texels = absl::StrCat(NumTexels(plan), " texels in all");
+  options_.given = {{"mine", std::nullopt, {{"lamp", {plan, 1.0}}}}};
+  options_.map = {200, 100};
+  options_.plan->texels = 20000;
+  const LightComparison comparison = CompareMaps(stage_, kLamp, options_);
+  const ComparedRow& mine = *comparison.Find("mine");
+  EXPECT_TRUE(mine.drawn.has_other_texels);
+  EXPECT_THAT(mine.note, HasSubstr(texels + ", and not the 20000 of one map here"));
+  EXPECT_FALSE(comparison.lightfit().drawn.has_other_texels);
+  // None of it is said of a plan that has what others have.
+  options_.given = {{"mine", std::nullopt, {{"lamp", {plan, 1.0}}}}};
+  Plan& given = options_.given[0].by_light["lamp"].plan;
+  given.maps.resize(1);
+  given.maps[0].size = {100, 200};
+  EXPECT_THAT(CompareMaps(stage_, kLamp, options_).Find("mine")->note,
+              Not(HasSubstr("the file's own sizes")));
+}
+
 TEST_F(ComparePlansTest, TotalsCountMaps) {
   const std::vector<LightComparison> lights = {CompareMaps(stage_, kSun, options_),
                                                CompareMaps(stage_, kLamp, options_)};
   for (const MethodTotals& totals : TotalsOf(lights)) {
     SCOPED_TRACE(totals.name);
-    double num_maps = 0.0;
+    double num_maps = 0.0, num_texels = 0.0;
     for (const LightComparison& light : lights) {
       const ComparedRow& row = *light.Find(totals.name);
-      if (row.status.ok()) num_maps += NumMaps(row.drawn);
+      if (!row.status.ok()) continue;
+      num_maps += NumMaps(row.drawn);
+      num_texels += static_cast<double>(NumTexels(row.drawn));
     }
     ASSERT_GT(totals.num_lights, 0);
     EXPECT_DOUBLE_EQ(totals.mean_maps, num_maps / totals.num_lights);
+    EXPECT_DOUBLE_EQ(totals.mean_texels, num_texels / totals.num_lights);
     EXPECT_EQ(totals.num_lights + totals.num_failed, 2);
   }
 }

@@ -1,15 +1,17 @@
-#include "io/given_matrices.h"
+#include "io/given_maps.h"
 
 #include <google/protobuf/struct.pb.h>
 
 #include <Eigen/LU>
-#include <vector>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "base/text_file.h"
-#include "geometry/map_size.h"
+#include "geometry/border.h"
+#include "geometry/clip.h"
+#include "geometry/homography.h"
 #include "lightfit/v1/result.pb.h"
 #include "wire/matrix_proto.h"
 #include "wire/plan_proto.h"
@@ -129,82 +131,127 @@ absl::StatusOr<Border> SingleBorder(const Struct& object) {
       absl::StrCat("border = \"", value->string_value(), "\", want \"lit\" or \"dark\""));
 }
 
-absl::StatusOr<GivenMatrix> SingleMatrix(const Struct& object, MapSize map) {
+GivenMaps OneMap(const Eigen::Matrix4d& map_from_world, MapSize map, Border border) {
+  return {PlanOfOneMap(/*light_name=*/"", map_from_world, map, border)};
+}
+
+absl::StatusOr<GivenMaps> SingleMatrix(const Struct& object, MapSize map) {
   const absl::StatusOr<Eigen::Matrix4d> matrix = SingleMapFromWorld(object, map);
   if (!matrix.ok()) return matrix.status();
   const absl::StatusOr<Border> border = SingleBorder(object);
   if (!border.ok()) return border.status();
-  return GivenMatrix{*matrix, *border};
+  return OneMap(*matrix, map, *border);
 }
 
-absl::StatusOr<std::map<std::string, GivenMatrix>> MatricesOfResult(absl::string_view json,
-                                                                    MapSize map) {
+absl::StatusOr<GivenMaps> PlanOfResult(const v1::Plan& proto, const std::string& field) {
+  absl::StatusOr<Plan> plan = PlanFromProto(proto, field);
+  if (!plan.ok()) return plan.status();
+  const absl::StatusOr<double> guard_texels = GuardTexelsFromProto(proto, field);
+  if (!guard_texels.ok()) return guard_texels.status();
+  return GivenMaps{*std::move(plan), *guard_texels};
+}
+
+absl::StatusOr<GivenMaps> MatrixOfResult(const v1::LightResult& light,
+                                         const std::string& of_light,
+                                         MapSize map) {
+  const absl::StatusOr<Eigen::Matrix4d> matrix =
+      MatrixFromProto(light.map_from_world(), of_light + "map_from_world");
+  if (!matrix.ok()) return matrix.status();
+  const absl::StatusOr<Border> border = BorderFromProto(light.border(), of_light + "border");
+  if (!border.ok()) return border.status();
+  const MapSize own_map = {light.map().width(), light.map().height()};
+  if (own_map.width < 1 || own_map.height < 1) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("%smap = %dx%d texels", of_light, own_map.width, own_map.height));
+  }
+  return OneMap(ScaledTexels(own_map, map) * *matrix, map, *border);
+}
+
+absl::StatusOr<std::map<std::string, GivenMaps>> MapsOfResult(absl::string_view json, MapSize map) {
   v1::FitResult result;
   if (absl::Status status = JsonToProto(json, result); !status.ok()) return status;
-  std::map<std::string, GivenMatrix> matrices;
+  std::map<std::string, GivenMaps> by_light;
   for (const v1::LightResult& light : result.lights()) {
-    if (absl::Status status = CheckHasOneMap(light); !status.ok()) return status;
-    if (light.status().code() != 0 || !light.has_map_from_world()) continue;
+    if (light.status().code() != 0 || !(light.has_plan() || light.has_map_from_world())) continue;
     const std::string of_light = absl::StrCat("light \"", light.name(), "\": ");
-    const absl::StatusOr<Eigen::Matrix4d> matrix =
-        MatrixFromProto(light.map_from_world(), of_light + "map_from_world");
-    if (!matrix.ok()) return matrix.status();
-    const absl::StatusOr<Border> border = BorderFromProto(light.border(), of_light + "border");
-    if (!border.ok()) return border.status();
-    const MapSize own_map = {light.map().width(), light.map().height()};
-    if (own_map.width < 1 || own_map.height < 1) {
-      return absl::InvalidArgumentError(absl::StrFormat(
-          "light \"%s\": map = %dx%d texels", light.name(), own_map.width, own_map.height));
-    }
-    matrices[light.name()] = {ScaledTexels(own_map, map) * *matrix, *border};
+    absl::StatusOr<GivenMaps> maps = light.has_plan()
+                                         ? PlanOfResult(light.plan(), of_light + "plan")
+                                         : MatrixOfResult(light, of_light, map);
+    if (!maps.ok()) return maps.status();
+    by_light[light.name()] = *std::move(maps);
   }
-  if (matrices.empty()) {
+  if (by_light.empty()) {
     return absl::InvalidArgumentError(
-        "lights: none of them has a map_from_world; want a result of lightfit fit --json");
+        "lights: none of them has a map_from_world or a plan; want a result of lightfit fit "
+        "--json");
   }
-  return matrices;
+  return by_light;
+}
+
+// Errors say which map is not one of the light.
+absl::Status CheckIsOfLight(const Plan& plan, const Light& light) {
+  for (size_t k = 0; k < plan.maps.size(); ++k) {
+    absl::Status status = MapFromRay(plan.maps[k].map_from_world, light).status();
+    if (status.ok()) continue;
+    if (plan.maps.size() == 1) return status;
+    return absl::Status(
+        status.code(),
+        absl::StrCat("plan.maps[", k, "]: ", status.message(), "; want the plan as it was fitted"));
+  }
+  return absl::OkStatus();
 }
 
 }  // namespace
 
-absl::StatusOr<GivenMatrix> GivenMatrices::Of(const std::string& light) const {
-  if (for_every_light.has_value()) return *for_every_light;
-  const auto found = by_light.find(light);
-  if (found != by_light.end()) return found->second;
-  const std::string known =
-      absl::StrJoin(by_light, ", ", [](std::string* out, const auto& name_and_matrix) {
-        absl::StrAppend(out, "\"", name_and_matrix.first, "\"");
-      });
-  return absl::NotFoundError(absl::StrCat(
-      "the file of ", name, " has no matrix for light \"", light, "\", it has ", known));
+absl::StatusOr<GivenMaps> GivenSetUp::Of(const Light& light) const {
+  const GivenMaps* given = for_every_light.has_value() ? &*for_every_light : nullptr;
+  if (given == nullptr) {
+    const auto found = by_light.find(light.name);
+    if (found != by_light.end()) given = &found->second;
+  }
+  if (given == nullptr) {
+    const std::string known =
+        absl::StrJoin(by_light, ", ", [](std::string* out, const auto& name_and_maps) {
+          absl::StrAppend(out, "\"", name_and_maps.first, "\"");
+        });
+    return absl::NotFoundError(absl::StrCat(
+        "the file of ", name, " has no maps for light \"", light.name, "\", it has ", known));
+  }
+  if (absl::Status status = CheckIsOfLight(given->plan, light); !status.ok()) {
+    return path.empty() ? status : InFile(path, status);
+  }
+  GivenMaps maps = *given;
+  maps.plan.light_name.assign(light.name.data(), light.name.size());
+  return maps;
 }
 
-absl::StatusOr<GivenMatrices> ParseGivenMatrices(const std::string& name,
-                                                 absl::string_view json,
-                                                 MapSize map) {
+absl::StatusOr<GivenSetUp> ParseGivenMaps(const std::string& name,
+                                          absl::string_view json,
+                                          MapSize map) {
   Struct object;
   if (absl::Status status = JsonToProto(json, object); !status.ok()) return status;
-  GivenMatrices given;
+  GivenSetUp given;
   given.name = name;
   if (object.fields().contains("lights")) {
-    absl::StatusOr<std::map<std::string, GivenMatrix>> matrices = MatricesOfResult(json, map);
-    if (!matrices.ok()) return matrices.status();
-    given.by_light = *std::move(matrices);
+    absl::StatusOr<std::map<std::string, GivenMaps>> maps = MapsOfResult(json, map);
+    if (!maps.ok()) return maps.status();
+    given.by_light = *std::move(maps);
     return given;
   }
-  const absl::StatusOr<GivenMatrix> matrix = SingleMatrix(object, map);
-  if (!matrix.ok()) return matrix.status();
-  given.for_every_light = *matrix;
+  absl::StatusOr<GivenMaps> maps = SingleMatrix(object, map);
+  if (!maps.ok()) return maps.status();
+  given.for_every_light = *std::move(maps);
   return given;
 }
 
-absl::StatusOr<GivenMatrices> ReadGivenMatrices(const std::string& name,
-                                                const std::string& path,
-                                                MapSize map) {
+absl::StatusOr<GivenSetUp> ReadGivenMaps(const std::string& name,
+                                         const std::string& path,
+                                         MapSize map) {
   const absl::StatusOr<std::string> json = ReadTextFile(path);
   if (!json.ok()) return json.status();
-  absl::StatusOr<GivenMatrices> given = ParseGivenMatrices(name, *json, map);
+  absl::StatusOr<GivenSetUp> given = ParseGivenMaps(name, *json, map);
   if (!given.ok()) return InFile(path, given.status());
+  given->path = path;
   return given;
 }
 
