@@ -347,7 +347,7 @@ absl::Status Run(const Arguments& arguments) {
   std::vector<LightRow> rows;
   {
     Progress progress(arguments.scenes.num_lights * static_cast<int>(SceneCases().size()));
-    const absl::Status status = ForEachScene(arguments.scenes, [&](size_t scene) {
+    absl::Status status = ForEachScene(arguments.scenes, [&](size_t scene) {
       return MeasureScene(scene, arguments, progress, &rows);
     });
     if (!status.ok()) return status;

@@ -75,7 +75,7 @@ absl::Status Run(const Arguments& arguments) {
   std::vector<std::pair<std::string, WrongPixelTable>> tables;
   {
     Progress progress(arguments.scenes.num_lights * static_cast<int>(SceneCases().size()));
-    const absl::Status status = ForEachScene(arguments.scenes, [&](size_t scene) {
+    absl::Status status = ForEachScene(arguments.scenes, [&](size_t scene) {
       WrongPixelTable table(kMethods);
       absl::Status added = AddScene(SceneCases()[scene], arguments, progress, {&all, &table});
       if (added.ok()) tables.emplace_back(SceneCases()[scene].name, std::move(table));

@@ -102,7 +102,7 @@ absl::Status Run(const Arguments& arguments) {
   std::string csv = "view,light,fit,limit,fit_other_phases,limit_other_phases,evaluations,note\n";
   {
     Progress progress(arguments.scenes.num_lights * static_cast<int>(SceneCases().size()));
-    const absl::Status status = ForEachScene(arguments.scenes, [&](size_t scene) {
+    absl::Status status = ForEachScene(arguments.scenes, [&](size_t scene) {
       return TuneScene(SceneCases()[scene], arguments, progress, &all, &csv);
     });
     if (!status.ok()) return status;

@@ -1,10 +1,9 @@
 #include "jobs/fit_comparison.h"
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <utility>
 
+#include "absl/strings/str_format.h"
 #include "jobs/plan_advice.h"
 #include "optimizer/fit.h"
 #include "optimizer/sizing/map_sizes.h"

@@ -277,7 +277,7 @@ absl::Status Run(const SceneArguments& arguments) {
   std::vector<LampRow> lamps;
   {
     Progress progress(arguments.num_lights * static_cast<int>(SceneCases().size()));
-    const absl::Status status = ForEachScene(arguments, [&](size_t scene) {
+    absl::Status status = ForEachScene(arguments, [&](size_t scene) {
       return MeasureScene(scene, arguments, rows, progress, &lamps);
     });
     if (!status.ok()) return status;

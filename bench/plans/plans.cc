@@ -156,7 +156,7 @@ absl::Status Run(const Arguments& arguments) {
   std::vector<PlannedLightRow> lights;
   {
     Progress progress(arguments.scenes.num_lights * static_cast<int>(SceneCases().size()));
-    const absl::Status status = ForEachScene(arguments.scenes, [&](size_t scene) {
+    absl::Status status = ForEachScene(arguments.scenes, [&](size_t scene) {
       return MeasureScene(scene, arguments, rows, progress, &lights);
     });
     if (!status.ok()) return status;

@@ -211,7 +211,7 @@ absl::Status Run(const Arguments& arguments) {
   std::array<std::array<Table, 2>, kWarped.size()> all;
   std::vector<std::string> names;
   std::vector<std::array<std::array<Table, 2>, kWarped.size()>> scenes;
-  const absl::Status status = ForEachScene(arguments.scenes, [&](size_t index) -> absl::Status {
+  absl::Status status = ForEachScene(arguments.scenes, [&](size_t index) -> absl::Status {
     const SceneCase& scene = SceneCases()[index];
     const absl::StatusOr<RayCaster> caster = LoadSceneCase(scene, arguments.scenes.folder);
     if (!caster.ok()) return caster.status();

@@ -183,7 +183,7 @@ absl::Status Run(const Arguments& arguments) {
   std::printf("   rows at 0.25\n");
   double worst = 0.0;
   std::array<Walk, kNumBounds> all;
-  const absl::Status status = ForEachScene(arguments.scenes, [&](size_t index) -> absl::Status {
+  absl::Status status = ForEachScene(arguments.scenes, [&](size_t index) -> absl::Status {
     const SceneCase& scene = SceneCases()[index];
     const absl::StatusOr<RayCaster> caster = LoadSceneCase(scene, arguments.scenes.folder);
     if (!caster.ok()) return caster.status();

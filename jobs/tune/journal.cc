@@ -2,7 +2,6 @@
 
 #include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <utility>
 
@@ -19,7 +18,7 @@ namespace {
 constexpr char kHeading[] = "lightfit tune journal 1, key ";
 
 absl::Status NotWritten(const std::string& path) {
-  return absl::UnknownError(absl::StrCat(path, ": cannot be written: ", std::strerror(errno)));
+  return absl::ErrnoToStatus(errno, absl::StrCat(path, ": cannot be written"));
 }
 
 // One value's line, without its end.

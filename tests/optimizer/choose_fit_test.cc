@@ -51,7 +51,8 @@ struct Pictures {
       for (SyntheticReadback* image : {&coarse, &fine}) {
         const int width = image->camera.width, height = image->camera.height;
         for (int i = 0; i < width * height; ++i) {
-          const double x_share = (i % width + 0.5) / width, y_share = (i / width + 0.5) / height;
+          const int x = i % width, y = i / width;
+          const double x_share = (x + 0.5) / width, y_share = (y + 0.5) / height;
           if (std::hypot(x_share - spot_x, y_share - spot_y) > radius) {
             image->shadow_bits[i] = ~uint32_t{0};
           }

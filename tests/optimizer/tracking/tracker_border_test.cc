@@ -45,7 +45,8 @@ struct Spots {
       SyntheticReadback frame = scene.readback;
       const int width = frame.camera.width, height = frame.camera.height;
       for (int i = 0; i < width * height; ++i) {
-        const double x_share = (i % width + 0.5) / width, y_share = (i / width + 0.5) / height;
+        const int column = i % width, row = i / width;
+        const double x_share = (column + 0.5) / width, y_share = (row + 0.5) / height;
         const bool is_spot = std::hypot(x_share - x, y_share - y) < 0.12;
         frame.shadow_bits[i] = is_spot != is_dark ? ~uint32_t{0} : 0u;
       }

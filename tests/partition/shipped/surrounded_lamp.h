@@ -19,7 +19,7 @@ struct SurroundedLamp {
   Light light;
   SyntheticReadback readback;
 
-  SurroundedLamp(uint64_t seed, int width = 64, int height = 48) {
+  explicit SurroundedLamp(uint64_t seed, int width = 64, int height = 48) {
     const BoxScene scene = MakeBoxScene(seed);
     const Camera camera = lightfit::RandomCamera(scene, seed, width, height);
     Random random(seed);

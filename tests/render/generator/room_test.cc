@@ -45,7 +45,8 @@ double LitShare(const RayCaster& caster, const Room& room, const Eigen::Vector3d
   constexpr int kSide = 60;
   int num_lit = 0;
   for (int i = 0; i < kSide * kSide; ++i) {
-    const Eigen::Vector3d share((i % kSide + 0.5) / kSide, 0.0, (i / kSide + 0.5) / kSide);
+    const int column = i % kSide, row = i / kSide;
+    const Eigen::Vector3d share((column + 0.5) / kSide, 0.0, (row + 0.5) / kSide);
     Eigen::Vector3d place = room.inside.min() + share.cwiseProduct(room.inside.sizes());
     place.y() = 0.1;
     if (!caster.IsBlocked({place, to_sun})) ++num_lit;
