@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cmath>
 #include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "absl/strings/numbers.h"
@@ -18,7 +19,8 @@ namespace {
 constexpr char kHeading[] = "lightfit tune journal 1, key ";
 
 absl::Status NotWritten(const std::string& path) {
-  return absl::ErrnoToStatus(errno, absl::StrCat(path, ": cannot be written"));
+  return absl::UnknownError(
+      absl::StrCat(path, ": cannot be written: ", std::generic_category().message(errno)));
 }
 
 // One value's line, without its end.
