@@ -114,6 +114,11 @@ std::string TitleOf(const std::string& path) {
   return (file.parent_path().filename() / file.filename()).string();
 }
 
+// The file, and what of it was taken.
+std::string SourceText(const FitFlags& flags, const ReadbackFile& file) {
+  return absl::StrCat(flags.readback_path, " (", OriginText(file.origin), ")");
+}
+
 // What is computed before anything is printed, so that the progress bar has the terminal to itself.
 struct Outcome {
   std::vector<FitComparison> comparisons;
@@ -171,7 +176,9 @@ absl::Status WriteOutputs(const FitFlags& flags,
                           const Outcome& outcome) {
   if (!flags.json_path.empty()) {
     const FitReport report = JsonReport(flags, options, file, outcome.comparisons);
-    absl::Status status = WriteFitResultJson(flags.json_path, FitResultToProto(report));
+    v1::FitResult result = FitResultToProto(report);
+    *result.mutable_readback()->mutable_origin() = OriginToProto(file.origin);
+    absl::Status status = WriteFitResultJson(flags.json_path, result);
     if (!status.ok()) return status;
   }
   if (flags.picture_path.empty()) return absl::OkStatus();
@@ -201,10 +208,10 @@ int RunFit(const FitFlags& flags) {
   const Outcome outcome = FitAndDraw(flags, options, *inputs);
   if (!flags.quiet) {
     const Readback readback = inputs->View();
+    const std::string source = SourceText(flags, inputs->file);
     const std::string text =
-        plan.has_value()
-            ? PlanReportText(flags.readback_path, readback, *plan, outcome.comparisons)
-            : FitReportText(flags.readback_path, readback, flags.map, options, outcome.comparisons);
+        plan.has_value() ? PlanReportText(source, readback, *plan, outcome.comparisons)
+                         : FitReportText(source, readback, flags.map, options, outcome.comparisons);
     std::fputs(text.c_str(), stdout);
     std::fflush(stdout);
   }

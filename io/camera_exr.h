@@ -42,7 +42,8 @@ absl::StatusOr<Camera> CameraFromExrMatrices(const Eigen::Matrix4d& world_to_cam
                                              int height,
                                              const CameraExrOptions& options = {});
 
-// The camera of the first part of the file that has both attributes.
+// The camera of the first part of the file, or, where it has not both attributes, of the others,
+// which must agree.
 absl::StatusOr<Camera> ReadCameraExr(const std::string& path, const CameraExrOptions& options = {});
 
 }  // namespace lightfit

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
 #include "geometry/camera.h"
 #include "io/camera_exr.h"
 #include "io/exr_input.h"
@@ -16,9 +17,17 @@ namespace lightfit::internal {
 // standard attribute beside it: a program that changes that one need not know of this.
 std::string ExactName(const std::string& attribute);
 
-// From the attributes of `part`, or of the first part that has both. The size is that of `part`.
-absl::StatusOr<Camera> CameraFromExr(const ExrInput& exr,
-                                     int part,
-                                     const CameraExrOptions& options);
+struct CameraOfPart {
+  Camera camera;
+  int part = 0;  // whose attributes these are
+};
+
+// From the attributes of `part`, or of the other parts that have both and are of the same `view`
+// (empty: of any); the size is that of `part`. InvalidArgument where these others differ, and where
+// a part of several views has the camera of another one, which is that of its default view.
+absl::StatusOr<CameraOfPart> CameraFromExr(const ExrInput& exr,
+                                           int part,
+                                           absl::string_view view,
+                                           const CameraExrOptions& options);
 
 }  // namespace lightfit::internal

@@ -7,6 +7,7 @@
 #include <OpenEXR/ImfMatrixAttribute.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStdIO.h>
 #include <OpenEXR/ImfTestFile.h>
 #include <OpenEXR/ImfTileDescription.h>
@@ -34,6 +35,8 @@ namespace {
 using Window = Imath::Box2i;
 
 constexpr size_t kMaxListedNames = 40;
+
+constexpr size_t kMaxViews = 16;
 
 // Side of a tile, where the image is smaller: OpenEXR takes memory for whole tiles.
 constexpr int64_t kMaxTileSide = 1024;
@@ -92,6 +95,17 @@ template <typename T>
 constexpr Imf::PixelType kPixelType = Imf::FLOAT;
 template <>
 constexpr Imf::PixelType kPixelType<uint32_t> = Imf::UINT;
+
+std::vector<std::string> ViewsOf(const Imf::Header& header) {
+  std::vector<std::string> views;
+  if (header.hasView()) {
+    views = {header.view()};
+  } else if (Imf::hasMultiView(header)) {
+    views = Imf::multiView(header);
+  }
+  views.erase(std::remove(views.begin(), views.end(), ""), views.end());
+  return views;
+}
 
 // The channel over the data window.
 template <typename T>
@@ -179,6 +193,12 @@ absl::StatusOr<ExrInput> ExrInput::Open(const std::string& path, int64_t max_pix
         return status;
       }
       Part& part = exr.parts_.emplace_back();
+      if (header.hasName()) part.name = header.name();
+      part.views = ViewsOf(header);
+      if (part.views.size() > kMaxViews) {
+        return absl::InvalidArgumentError(absl::StrFormat(
+            "%s: part %d has %d views, want at most %d", path, i, part.views.size(), kMaxViews));
+      }
       const Imf::ChannelList& channels = header.channels();
       for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
         part.channels.emplace_back(channel.name());
@@ -201,21 +221,13 @@ int ExrInput::height(int part) const {
 }
 
 std::string ExrInput::quoted_name(ChannelId id) const {
-  return absl::StrCat("\"", Utf8Text(name(id)), "\"");
+  const std::string quoted = absl::StrCat("\"", Utf8Text(name(id)), "\"");
+  return num_parts() == 1 ? quoted : absl::StrCat(quoted, " of ", quoted_part(id.part));
 }
 
-std::optional<ChannelId> ExrInput::Find(absl::string_view name, int preferred_part) const {
-  const auto find_in = [&](int part) -> std::optional<ChannelId> {
-    const std::vector<std::string>& names = channels(part);
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end()) return std::nullopt;
-    return ChannelId{part, static_cast<int>(found - names.begin())};
-  };
-  if (std::optional<ChannelId> id = find_in(preferred_part)) return id;
-  for (int part = 0; part < num_parts(); ++part) {
-    if (std::optional<ChannelId> id = find_in(part)) return id;
-  }
-  return std::nullopt;
+std::string ExrInput::quoted_part(int part) const {
+  if (part_name(part).empty()) return absl::StrCat("part ", part);
+  return absl::StrCat("part \"", Utf8Text(part_name(part)), "\"");
 }
 
 double ExrInput::pixel_aspect(int part) const {

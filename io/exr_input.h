@@ -45,11 +45,16 @@ class ExrInput {
   // Names in file order, which is that of the alphabet.
   const std::vector<std::string>& channels(int part) const { return parts_[part].channels; }
   const std::string& name(ChannelId id) const { return channels(id.part)[id.channel]; }
-  std::string quoted_name(ChannelId id) const;  // for messages
+  std::string quoted_name(ChannelId id) const;  // for messages, with its part where there are more
   bool is_uint(ChannelId id) const { return parts_[id.part].is_uint[id.channel]; }
 
-  // The channel of that name in the given part, else in the first part that has it.
-  std::optional<ChannelId> Find(absl::string_view name, int preferred_part) const;
+  // Of the header; empty where it has none.
+  const std::string& part_name(int part) const { return parts_[part].name; }
+  std::string quoted_part(int part) const;  // for messages; its number where it has no name
+
+  // The views of a stereo file that the part's channels belong to, the default one first: one where
+  // the part says `view`, several where it says `multiView`, and none in other files.
+  const std::vector<std::string>& part_views(int part) const { return parts_[part].views; }
 
   // Width over height of a pixel, 1 where the part does not say.
   double pixel_aspect(int part) const;
@@ -69,6 +74,8 @@ class ExrInput {
  private:
   struct Source;  // OpenEXR's own
   struct Part {
+    std::string name;
+    std::vector<std::string> views;
     std::vector<std::string> channels;
     std::vector<bool> is_uint;
   };

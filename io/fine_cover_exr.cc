@@ -5,7 +5,9 @@
 
 #include "absl/strings/str_format.h"
 #include "geometry/resized_camera.h"
-#include "io/camera_exr.h"
+#include "io/camera_exr_input.h"
+#include "io/exr_channels.h"
+#include "io/exr_depth.h"
 #include "io/exr_input.h"
 
 namespace lightfit {
@@ -47,7 +49,11 @@ absl::StatusOr<FineCoverFile> ReadFineCoverExr(const std::string& path,
                                                const ReadbackFile& readback) {
   const absl::StatusOr<internal::ExrInput> exr = internal::ExrInput::Open(path, options.max_pixels);
   if (!exr.ok()) return exr.status();
-  const int width = exr->width(0), height = exr->height(0);
+  const absl::StatusOr<internal::DepthChoice> depth =
+      internal::ChooseDepth(internal::ExrChannels(*exr), options.depth_channel, options.view);
+  if (!depth.ok()) return depth.status();
+  const int part = depth->id.part;
+  const int width = exr->width(part), height = exr->height(part);
   if (width <= readback.camera.width || height <= readback.camera.height) {
     return absl::InvalidArgumentError(absl::StrFormat(
         "%s: %d x %d pixels, want more than the read-back's %d x %d: it is there for what lies "
@@ -61,8 +67,9 @@ absl::StatusOr<FineCoverFile> ReadFineCoverExr(const std::string& path,
   ReadbackExrOptions of_fine = options;
   of_fine.camera = ResizedCamera(readback.camera, width, height);
   of_fine.depth_kind = readback.depth_kind;
-  const absl::StatusOr<Camera> own = ReadCameraExr(path, options.camera_exr);
-  if (!options.camera.has_value() && own.ok() && !SeeTheSame(*of_fine.camera, *own)) {
+  const absl::StatusOr<internal::CameraOfPart> own =
+      internal::CameraFromExr(*exr, part, depth->view, options.camera_exr);
+  if (!options.camera.has_value() && own.ok() && !SeeTheSame(*of_fine.camera, own->camera)) {
     return absl::InvalidArgumentError(absl::StrFormat(
         "%s: its camera sees another view than the read-back's: want the same frame, only larger",
         path));

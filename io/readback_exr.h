@@ -2,13 +2,18 @@
 //
 // Read-backs from OpenEXR files, as renderers write them.
 // In:   an EXR file with a depth channel and shadow channels, the lights, and what the file means.
-// Out:  ReadbackFile: depth, bits and camera, owned; one status per light.
+// Out:  ReadbackFile: depth, bits and camera, owned; where they were found; one status per light.
 //
-// Depth is the channel "Z" or "<layer>.Z". Shadows are one channel per light, "shadow.<light>",
-// above 0.5 where that light is blocked, or one UINT channel of bits. Optional, per light as well:
-// "facing.<light>", above 0.5 where the surface faces the light, and "mapped.<light>", where the
-// map that is drawn with says shadow. In a multi-part file the first part with a depth channel is
-// the read-back; the others may lie in any part of its size.
+// Depth is the channel "Z" or one that is called depth, in any part (io/exr_depth.h): a Z that
+// stands beside an X is a vector's, and two that are equally good are refused. Shadows are one
+// channel per light, "shadow.<light>", above 0.5 where that light is blocked, or one UINT channel
+// of bits. Optional, per light as well: "facing.<light>", above 0.5 where the surface faces the
+// light, and "mapped.<light>", where the map that is drawn with says shadow. They may lie in any
+// part of the depth's size.
+//
+// A channel that an option names is CHANNEL, of the depth's part if it has one, or PART.CHANNEL. Of
+// a stereo file depth, bits and camera are of one view, whose name may be left out of those of
+// channels and parts.
 #pragma once
 
 #include <cstdint>
@@ -23,6 +28,7 @@
 #include "geometry/camera.h"
 #include "geometry/light.h"
 #include "io/camera_exr.h"
+#include "io/readback_origin.h"
 #include "optimizer/readback/readback.h"
 
 namespace lightfit {
@@ -30,8 +36,11 @@ namespace lightfit {
 struct ReadbackExrOptions {
   DepthKind depth_kind = DepthKind::kCameraZ;
 
-  // Empty: "Z", or else the only channel whose last component is Z ("ViewLayer.Depth.Z").
+  // Empty: the best by io/exr_depth.h: "Z", "depth", "ViewLayer.Depth.Z", "depth.V" and so on.
   std::string depth_channel;
+
+  // The view of a stereo file: "left". Empty: the only one that has a depth.
+  std::string view;
 
   // The shadow channel of a light; "{light}" stands for the light's name, once.
   std::string shadow_channel_format = "shadow.{light}";
@@ -56,6 +65,7 @@ struct ReadbackExrOptions {
 };
 
 struct ReadbackFile {
+  ReadbackOrigin origin;
   Camera camera;
   DepthKind depth_kind = DepthKind::kCameraZ;
   std::vector<float> depth;           // row-major, top row first, the display window

@@ -25,10 +25,12 @@ constexpr char kExamples[] =
     "  lightfit fit --summary part1.summary part2.summary --json shot.json\n"
     "\n"
     "Units: positions and depth in world units, maps in texels, images in pixels.\n"
-    "The read-back holds a depth channel Z and one channel shadow.LIGHT per light, above 0.5 "
-    "where\n"
-    "that light is blocked; facing.LIGHT, above 0.5 where a surface faces the light, is optional;\n"
-    "the camera comes from worldToCamera and worldToNDC in its header.";
+    "The read-back holds a depth channel, Z or one called depth, and one channel shadow.LIGHT per\n"
+    "light, above 0.5 where that light is blocked; facing.LIGHT, above 0.5 where a surface faces "
+    "the\n"
+    "light, is optional; the camera comes from worldToCamera and worldToNDC in its header. They "
+    "may\n"
+    "lie in several parts; what was taken stands in the first line.";
 
 // An option whose value is one of a few words. CLI11's own transformer would also take the numbers
 // behind the words.
@@ -129,12 +131,21 @@ void DeclareReadbackFlags(CLI::App* app, const std::string& group, FitFlags* fla
             &flags->depth_kind,
             "What the depth channel holds [camera-z, or as the camera file says]")
       ->group(group);
-  app->add_option("--depth-channel", flags->depth_channel, "Name of the depth channel [Z]")
+  app->add_option("--depth-channel",
+                  flags->depth_channel,
+                  "Name of the depth channel, CHANNEL or PART.CHANNEL [Z, or what is called depth]")
       ->type_name("CHANNEL")
+      ->group(group);
+  app->add_option("--view",
+                  flags->view,
+                  "The view of a stereo file, such as left, that depth, shadows and camera are of "
+                  "[the only one with a depth]")
+      ->type_name("VIEW")
       ->group(group);
   app->add_option("--shadow-channel",
                   flags->shadow_channel_format,
-                  "Name of the shadow channels [shadow.{light}]")
+                  "Name of the shadow channels; of layers that are parts, PART.CHANNEL such as "
+                  "shadow_{light}.red [shadow.{light}]")
       ->type_name("FORMAT")
       ->group(group);
   app->add_option("--shadow-bits-channel",

@@ -38,6 +38,7 @@ struct FitFlags {
 
   std::optional<DepthKind> depth_kind;  // absent: the camera file's, or kCameraZ
   std::string depth_channel;
+  std::string view;  // of a stereo file
   std::string shadow_channel_format;
   std::string shadow_bits_channel;
   std::string cover_readback_path;  // the same view finer, for the cover

@@ -48,6 +48,7 @@ absl::StatusOr<ReadbackExrOptions> ReadbackOptionsOf(const FitFlags& flags) {
   ReadbackExrOptions options;
   options.depth_kind = flags.depth_kind.value_or(DepthKind::kCameraZ);
   options.depth_channel = flags.depth_channel;
+  options.view = flags.view;
   if (!flags.shadow_channel_format.empty()) {
     options.shadow_channel_format = flags.shadow_channel_format;
   }

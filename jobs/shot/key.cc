@@ -51,15 +51,20 @@ std::string JsonOrError(const google::protobuf::Message& message) {
   return json.ok() ? *json : json.status().ToString();
 }
 
+// Raised whenever the same options may find other channels in a file.
+constexpr int kReadingRevision = 2;
+
 // How a file is to be understood.
 std::string ReadingText(const ReadbackExrOptions& exr) {
   const std::string channels = absl::StrJoin({absl::string_view(exr.depth_channel),
                                               absl::string_view(exr.shadow_channel_format),
                                               absl::string_view(exr.shadow_bits_channel),
                                               absl::string_view(exr.facing_channel_format),
-                                              absl::string_view(exr.mapped_channel_format)},
+                                              absl::string_view(exr.mapped_channel_format),
+                                              absl::string_view(exr.view)},
                                              "\n");
-  return absl::StrFormat("%d\n%s\n%s\n%.17g %.17g %.17g\n%s",
+  return absl::StrFormat("%d %d\n%s\n%s\n%.17g %.17g %.17g\n%s",
+                         kReadingRevision,
                          static_cast<int>(exr.depth_kind),
                          channels,
                          CameraConventionWords(exr.camera_exr.convention),

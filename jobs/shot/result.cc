@@ -122,7 +122,11 @@ v1::FitResult ShotResultToProto(const ShotJob& job,
   FitReport report = ReportOf(job, readback, fits);
   report.source = job.frames[frame].path;
   v1::FitResult result = FitResultToProto(report);
-  if (readback == nullptr) result.mutable_readback()->clear_camera();
+  if (readback == nullptr) {
+    result.mutable_readback()->clear_camera();
+  } else {
+    *result.mutable_readback()->mutable_origin() = OriginToProto(readback->origin);
+  }
   for (size_t light = 0; light < fits.size(); ++light) {
     if (!fits[light].ok()) continue;
     v1::ShotLight& proto = *result.mutable_lights(static_cast<int>(light))->mutable_shot();

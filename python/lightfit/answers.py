@@ -58,6 +58,7 @@ class Answers(abc.ABC):
         request = fit_request(parts, size, options, clip, foretell_wrong)
         message = self._fit(request, parts.pixels, timeout_s, request_id)
         _put_light_status(readback, message)
+        message.readback.origin.CopyFrom(readback.origin)
         return FitResult.of(message)
 
 

@@ -29,6 +29,7 @@ class ExrReadback:
     lights: Tuple[light_pb2.Light, ...]
     light_status: List[result_pb2.Status]  # of each: code 0, or why its channels cannot be read
     path: str
+    origin: result_pb2.ReadbackOrigin  # the channel, parts and view that were taken
 
     # One plane per light, (h, w) bool, None where the file has none of it; None: of no light.
     facing: Optional[Planes] = None  # True where the surface faces the light
@@ -66,6 +67,7 @@ def read_exr(
     facing_channel: str = "",
     mapped_channel: str = "",
     cover: Optional[Path_] = None,
+    view: str = "",
 ) -> ExrReadback:
     """Reads depth, shadows, camera, and what there is of facing and mapped.
 
@@ -76,7 +78,8 @@ def read_exr(
     near, far: clip planes, world units; needed for NDC depth only.
     pixel_aspect: width over height of a pixel. None: as the file says.
     depth_kind: as for Camera.from_matrices. None: as the camera says, or else "camera-z".
-    depth_channel: "Z", or the only channel that ends in ".Z", unless given.
+    depth_channel: the best of "Z", "depth", "ViewLayer.Depth.Z", "depth.V" and the like, unless
+        given. This and the names below are CHANNEL, or PART.CHANNEL of a file of several parts.
     shadow_channel: the name of the shadow channels, "shadow.{light}" unless given; a light is
         blocked above 0.5.
     shadow_channels: light name to channel name, for lights that do not follow that.
@@ -87,6 +90,8 @@ def read_exr(
         shadow above 0.5.
     cover: a second file, the same frame with more pixels, as `lightfit fit --cover-readback`: its
         channels have the same names, and its camera is the read-back's.
+    view: the view of a stereo file that depth, shadows and camera are of. "": the only one that
+        has a depth.
 
     Raises InvalidArgumentError when the file, its depth or its camera cannot be used. A light
     without a shadow channel has its own `light_status`, and no shadow.
@@ -95,6 +100,7 @@ def read_exr(
     options: Dict[str, Any] = {
         "camera_convention": camera_convention,
         "depth_channel": depth_channel,
+        "view": view,
         "shadow_channel": shadow_channel,
         "shadow_channels": dict(shadow_channels or {}),
         "shadow_bits_channel": shadow_bits_channel,
@@ -110,7 +116,7 @@ def read_exr(
         options["camera"] = message.SerializeToString()
     name = os.fspath(path)
     light_list = light_pb2.LightList(lights=messages).SerializeToString()
-    depth, shadow, facing, mapped, found, statuses = _load.native().read_exr(
+    depth, shadow, facing, mapped, found, statuses, origin = _load.native().read_exr(
         name, light_list, options
     )
     fine = None
@@ -126,6 +132,7 @@ def read_exr(
         lights=messages,
         light_status=[result_pb2.Status(code=code, message=text) for code, text in statuses],
         path=name,
+        origin=result_pb2.ReadbackOrigin.FromString(origin),
         facing=_planes(facing, len(messages)),
         mapped=_planes(mapped, len(messages)),
         cover=fine,

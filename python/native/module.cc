@@ -236,6 +236,7 @@ absl::StatusOr<ReadbackExrOptions> ExrOptionsOf(const py::dict& fields) {
   Take(fields, "far", &options.camera_exr.far);
   Take(fields, "pixel_aspect", &options.camera_exr.pixel_aspect);
   Take(fields, "depth_channel", &options.depth_channel);
+  Take(fields, "view", &options.view);
   Take(fields, "shadow_channel", &shadow_channel);
   Take(fields, "shadow_channels", &options.shadow_channels);
   Take(fields, "shadow_bits_channel", &options.shadow_bits_channel);
@@ -273,7 +274,7 @@ absl::StatusOr<std::vector<Light>> LightsOfList(const std::string& lights_bytes)
 }
 
 // (depth, shadow bits, (facing bits, lights), (mapped bits, lights), lightfit.v1.Camera, [(code,
-// message) of each light]); of the lights 0 where there are no bits.
+// message) of each light], lightfit.v1.ReadbackOrigin); of the lights 0 where there are no bits.
 py::tuple ReadExr(const std::string& path,
                   const std::string& lights_bytes,
                   const py::dict& fields) {
@@ -304,7 +305,8 @@ py::tuple ReadExr(const std::string& path,
       optional(std::move(file->facing_bits), file->facing_lights),
       optional(std::move(file->mapped_bits), file->mapped_lights),
       py::bytes(CameraToProto(file->camera, file->depth_kind).SerializeAsString()),
-      statuses);
+      statuses,
+      py::bytes(OriginToProto(file->origin).SerializeAsString()));
 }
 
 // (depth, shadow bits, (lit bits, lights)) of the read-back whose lightfit.v1.Camera that is; of

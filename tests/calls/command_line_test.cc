@@ -24,6 +24,7 @@ using testing::Yard;
 template <typename Message>
 std::string JsonWithoutSource(Message message) {
   message.mutable_readback()->clear_source();
+  message.mutable_readback()->clear_origin();
   return *ProtoToJson(message);
 }
 

@@ -11,6 +11,7 @@
 #include <OpenEXR/ImfMultiPartOutputFile.h>
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStandardAttributes.h>
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -35,6 +36,8 @@ struct ExrPart {
   std::vector<std::pair<std::string, Eigen::Matrix4d>> matrices;  // rows as stored
   float pixel_aspect = 1.0F;
   std::string name = "part";
+  std::string view;                     // of a stereo file; empty: the part does not say
+  std::vector<std::string> multi_view;  // likewise, of a part that has several
 };
 
 inline Imf::Header HeaderOf(const ExrPart& part) {
@@ -46,6 +49,8 @@ inline Imf::Header HeaderOf(const ExrPart& part) {
   header.compression() = Imf::ZIP_COMPRESSION;
   header.setName(part.name);  // a multi-part file must tell parts apart
   header.setType(Imf::SCANLINEIMAGE);
+  if (!part.view.empty()) header.setView(part.view);
+  if (!part.multi_view.empty()) Imf::addMultiView(header, part.multi_view);
   for (const Channel& channel : part.channels) {
     header.channels().insert(channel.name, Imf::Channel(channel.type));
   }

@@ -269,12 +269,12 @@ TEST(ReadReadbackExr, FindsBlenderDepthAndRefusesToChooseAmongSeveral) {
   testing::WriteExr(folder.File("a.exr"), {part});
   EXPECT_TRUE(ReadReadbackExr(folder.File("a.exr"), kLights).ok());
 
-  part.channels.push_back({"Other.Normal.Z", Imf::FLOAT, SunShadow});
+  part.channels.push_back({"Other.Depth.Z", Imf::FLOAT, SunShadow});
   testing::WriteExr(folder.File("a.exr"), {part});
   const auto refused = ReadReadbackExr(folder.File("a.exr"), kLights);
   ASSERT_EQ(refused.status().code(), absl::StatusCode::kInvalidArgument);
   EXPECT_TRUE(HasAll(refused.status().message(),
-                     {"\"ViewLayer.Depth.Z\"", "\"Other.Normal.Z\"", "depth_channel"}));
+                     {"\"ViewLayer.Depth.Z\"", "\"Other.Depth.Z\"", "depth_channel"}));
 
   ReadbackExrOptions options;
   options.depth_channel = "ViewLayer.Depth.Z";
@@ -289,11 +289,11 @@ TEST(ReadReadbackExr, FindsBlenderDepthAndRefusesToChooseAmongSeveral) {
 TEST(ReadReadbackExr, SaysWhichChannelsThereAreWhenNoneIsDepth) {
   const TemporaryFolder folder;
   ExrPart part = StandardPart();
-  part.channels[0].name = "depth";
+  part.channels[0].name = "distant";
   testing::WriteExr(folder.File("a.exr"), {part});
   const auto file = ReadReadbackExr(folder.File("a.exr"), kLights);
   ASSERT_EQ(file.status().code(), absl::StatusCode::kNotFound);
-  EXPECT_TRUE(HasAll(file.status().message(), {"\"Z\"", "\"depth\"", "depth_channel"}));
+  EXPECT_TRUE(HasAll(file.status().message(), {"\"Z\"", "\"distant\"", "depth_channel"}));
 }
 
 TEST(ReadReadbackExr, RefusesWholeNumbersAsDepth) {

@@ -131,3 +131,29 @@ def test_arrays_outlive_the_readback() -> None:
     for _ in range(4):
         lightfit.read_exr(YARD / "0001.exr", YARD / "scene.json")
     assert numpy.array_equal(depth, copy)
+
+
+def test_a_position_before_the_depth_is_no_depth(fit_by_program: Any) -> None:
+    folder = YARD.parents[2] / "shared" / "cases" / "exr_position_part_before_depth"
+    if not folder.exists():
+        pytest.skip(f"no case at {folder}")
+    exr, lights = folder / "frame.exr", folder / "lights.json"
+    want = fit_by_program(exr, "--lights", lights)
+    assert (want.readback.origin.depth_channel, want.readback.origin.depth_part) == ("Z", "depth")
+    assert lightfit.fit_exr(exr, lights, MAP, foretell_wrong=True).message == want
+
+    points = numpy.load(folder / "points.npz")
+    for light in want.lights:
+        rows = numpy.array(light.map_from_world.m).reshape(4, 4)
+        here = numpy.c_[points[light.name], numpy.ones(len(points[light.name]))] @ rows.T
+        u, v = here[:, 0] / here[:, 3], here[:, 1] / here[:, 3]
+        assert (here[:, 3] > 0).all()
+        covered = (u >= 0) & (v >= 0) & (u <= MAP[0]) & (v <= MAP[1])
+        # The file's depth is in half precision, and the points are not.
+        assert covered.mean() >= 0.99, light.name
+
+
+def test_the_depth_of_a_wrong_view_is_refused(yard: lightfit.ExrReadback) -> None:
+    assert yard.origin.depth_channel == "Z" and yard.origin.view == ""
+    with pytest.raises(lightfit.LightfitError, match='no view "left"'):
+        lightfit.read_exr(yard.path, list(yard.lights), view="left")
