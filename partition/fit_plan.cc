@@ -176,7 +176,7 @@ absl::StatusOr<LightPlan> FitPlan(const Surfaces& surfaces,
     for (const Border with : borders) {
       if (is_fine && !HasFineCover(surfaces, light, with, options)) continue;
       const absl::StatusOr<LightPlan> last = FitInBorder(surfaces, light, with, tried, &choice);
-      if (absl::IsCancelled(last.status())) return last;
+      if (absl::IsCancelled(last.status())) return last.status();
       why_none.Update(last.status());
     }
   }
