@@ -99,8 +99,7 @@ absl::Status ReadReadback(const v1::AllocateRequest& request,
       PlanOptionsOfBudget(request, *options, num_usable, limits);
   if (!plans.ok()) return plans.status();
   task->plans = *plans;
-  if (absl::Status status = ValidateReadback(task->readback.value()); !status.ok()) return status;
-  return task->plans.has_value() ? CheckServesPlans(*task->readback) : absl::OkStatus();
+  return ValidateReadback(task->readback.value());
 }
 
 // Sums know the root mean square alone, and only of squares.

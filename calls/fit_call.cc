@@ -100,9 +100,6 @@ absl::StatusOr<v1::FitResult> AnswerFit(const v1::FitRequest& request,
   const absl::StatusOr<ClipConvention> clip = ClipOfRequest(request);
   if (!clip.ok()) return clip.status();
   if (absl::Status status = ValidateReadback(readback); !status.ok()) return status;
-  if (plan->has_value()) {
-    if (absl::Status status = CheckServesPlans(readback); !status.ok()) return status;
-  }
 
   FitReport report;
   report.source = request.readback().source();

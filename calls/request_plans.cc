@@ -84,12 +84,6 @@ absl::StatusOr<std::optional<PlanOptions>> PlanOptionsOfBudget(const v1::Allocat
   return std::optional<PlanOptions>(*options);
 }
 
-absl::Status CheckServesPlans(const Readback& readback) {
-  if (readback.fine_cover == nullptr) return absl::OkStatus();
-  return absl::InvalidArgumentError(
-      "readback.fine_cover: plans do not look at it yet; leave it out, or leave out plan_options");
-}
-
 LightFit PlanFitOf(const RequestLight& light,
                    const Surfaces& surfaces,
                    const PlanOptions& options,

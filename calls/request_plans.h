@@ -15,7 +15,6 @@
 #include "lightfit/v1/options.pb.h"
 #include "lightfit/v1/result.pb.h"
 #include "lightfit/v1/service.pb.h"
-#include "optimizer/readback/readback.h"
 #include "optimizer/readback/surfaces.h"
 #include "partition/plan_options.h"
 #include "wire/result_json.h"
@@ -53,9 +52,6 @@ absl::StatusOr<std::optional<PlanOptions>> PlanOptionsOfBudget(const v1::Allocat
                                                                const FitOptions& fit,
                                                                int num_lights,
                                                                const CallLimits& limits);
-
-// InvalidArgument for a finer cover, which plans do not look at yet.
-absl::Status CheckServesPlans(const Readback& readback);
 
 // A light's plan and its figures; the forecast only where `foretells`. As `lightfit fit --maps`.
 LightFit PlanFitOf(const RequestLight& light,

@@ -153,8 +153,10 @@ absl::StatusOr<v1::FitResult> TrackSession::Track(const v1::TrackFrame& frame,
   const absl::StatusOr<std::vector<RequestLight>> lights = LightsOfRequest(frame.lights());
   if (!lights.ok()) return lights.status();
   if (absl::Status status = ValidateReadback(pixels); !status.ok()) return status;
-  if (plans_.has_value()) {
-    if (absl::Status status = CheckServesPlans(pixels); !status.ok()) return status;
+  if (plans_.has_value() && pixels.fine_cover != nullptr) {
+    return absl::InvalidArgumentError(
+        "readback.fine_cover: plans that are tracked do not look at it; leave it out, or leave out "
+        "plan_options");
   }
   std::optional<PlanTrackers> plans = plans_;
   absl::StatusOr<TrackedFits> tracked =

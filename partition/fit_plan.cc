@@ -124,6 +124,17 @@ absl::StatusOr<LightPlan> FitInBorder(const Surfaces& surfaces,
   return last;
 }
 
+// Whether the read-back has one that the options take in and that knows what this border answers
+// wrongly.
+bool HasFineCover(const Surfaces& surfaces,
+                  const Light& light,
+                  Border border,
+                  const PlanOptions& options) {
+  const FineCover* fine = surfaces.readback.fine_cover;
+  return fine != nullptr && options.fit.use_fine_cover && options.fit.cover == Cover::kShadowed &&
+         !fine->NeededBits(border, light.shadow_bit).empty();
+}
+
 }  // namespace
 
 Plan PlanOf(const LightPlan& plan) {
@@ -146,17 +157,30 @@ absl::StatusOr<LightPlan> FitPlan(const Surfaces& surfaces,
   if (options.max_maps == 1) return FitOneMap(options, surfaces, light);
   const BorderChoice border = options.fit.border;
   const Border first = border == BorderChoice::kDark ? Border::kDark : Border::kLit;
+  PlanOptions coarse = options;
+  coarse.fit.use_fine_cover = false;
   if (!options.choose_by_forecast || !surfaces.readback.KnowsFacing(light.shadow_bit)) {
-    return FitInBorder(surfaces, light, first, options, nullptr);
+    if (HasFineCover(surfaces, light, first, options)) {
+      absl::StatusOr<LightPlan> plan = FitInBorder(surfaces, light, first, options, nullptr);
+      // Around a lamp it may want more maps than there may be: left out, as by one map.
+      if (!absl::IsFailedPrecondition(plan.status())) return plan;
+    }
+    return FitInBorder(surfaces, light, first, coarse, nullptr);
   }
+  ScratchVector<Border> borders = {first};
+  if (border == BorderChoice::kAutomatic) borders.push_back(Border::kDark);
   Choice choice(surfaces, light, options);
-  absl::StatusOr<LightPlan> last = FitInBorder(surfaces, light, first, options, &choice);
-  if (absl::IsCancelled(last.status())) return last;
-  if (border == BorderChoice::kAutomatic) {
-    absl::StatusOr<LightPlan> dark = FitInBorder(surfaces, light, Border::kDark, options, &choice);
-    if (absl::IsCancelled(dark.status())) return dark;
+  absl::Status why_none;
+  for (const bool is_fine : {false, true}) {
+    const PlanOptions& tried = is_fine ? options : coarse;
+    for (const Border with : borders) {
+      if (is_fine && !HasFineCover(surfaces, light, with, options)) continue;
+      const absl::StatusOr<LightPlan> last = FitInBorder(surfaces, light, with, tried, &choice);
+      if (absl::IsCancelled(last.status())) return last.status();
+      why_none.Update(last.status());
+    }
   }
-  if (choice.is_empty()) return last;
+  if (choice.is_empty()) return why_none;
   return std::move(choice).Best();
 }
 

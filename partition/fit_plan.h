@@ -42,8 +42,9 @@ struct LightPlan {
 // What a look-up needs of it.
 Plan PlanOf(const LightPlan& plan);
 
-// The plan for one light. Of one map it is FitLight(), with a map that is square unless
-// PlanOptions::each says otherwise.
+// The plan for one light. With a finer cover (FitOptions::use_fine_cover) it has room for that, or
+// not, where less is foretold without or so many maps cannot have it all in front. Of one map it is
+// FitLight(), with a map that is square unless PlanOptions::each says otherwise.
 absl::StatusOr<LightPlan> FitPlan(const Surfaces& surfaces,
                                   const Light& light,
                                   const PlanOptions& options = {});

@@ -5,6 +5,7 @@
 
 #include "base/stop.h"
 #include "optimizer/readback/needed_surfaces.h"
+#include "partition/served_rays.h"
 
 namespace lightfit {
 
@@ -26,26 +27,36 @@ ScratchVector<MapDepths> FindMapDepths(const LightView& view,
   std::optional<NeededSurfaces> needed;
   if (fit.cover == Cover::kShadowed) needed.emplace(surfaces, *view.light, view.border);
   ScratchVector<MapDepths> depths(maps.size());
+  const auto look =
+      [&](const Eigen::Vector4d& screen, const Eigen::Matrix4d& world_from_screen, bool is_served) {
+        Eigen::Vector4d world = world_from_screen * screen;
+        world /= world.w();
+        const int k = DensestAt(maps, ray_from_world * world, guard_texels);
+        if (k < 0) return;
+        const double w = map_from_world[k].row(3).dot(world);
+        const double z = map_from_world[k].row(2).dot(world) / w;
+        MapDepths& of = depths[k];
+        of.least_w = std::min(of.least_w, w);
+        of.most_w = std::max(of.most_w, w);
+        of.most_z = std::max(of.most_z, z);
+        if (!is_served) return;
+        of.least_w_served = std::min(of.least_w_served, w);
+        of.least_z_served = std::min(of.least_z_served, z);
+      };
   for (int y = 0; y < readback.height() && !StopRequested(); ++y) {
     for (int x = 0; x < readback.width(); ++x) {
       const size_t pixel = readback.Index(x, y);
       if (!surfaces.affine_depth.IsSurface(readback.depth[pixel])) continue;
       const double d = surfaces.affine_depth.At(x, y, readback.depth[pixel]);
-      const Eigen::Vector4d screen(x + 0.5, y + 0.5, d, 1.0);
-      Eigen::Vector4d world = surfaces.world_from_screen * screen;
-      world /= world.w();
-      const int k = DensestAt(maps, ray_from_world * world, guard_texels);
-      if (k < 0) continue;
-      const double w = map_from_world[k].row(3).dot(world);
-      const double z = map_from_world[k].row(2).dot(world) / w;
-      MapDepths& of = depths[k];
-      of.least_w = std::min(of.least_w, w);
-      of.most_w = std::max(of.most_w, w);
-      of.most_z = std::max(of.most_z, z);
-      if (needed.has_value() && (needed->words()[pixel] & bit) == 0) continue;
-      of.least_w_served = std::min(of.least_w_served, w);
-      of.least_z_served = std::min(of.least_z_served, z);
+      look({x + 0.5, y + 0.5, d, 1.0},
+           surfaces.world_from_screen,
+           !needed.has_value() || (needed->words()[pixel] & bit) != 0);
     }
+  }
+  for (const FineSurfaces& fine : FineSurfacesServed(view, fit)) {
+    fine.ForEach([&](const Eigen::Vector4d& cell) {
+      look(cell, fine.surfaces.world_from_screen, /*is_served=*/true);
+    });
   }
   return depths;
 }

@@ -5,7 +5,8 @@
 // Out:  MapDepths; rows that have all of them in 0 ... 1.   docs/mathematics.md 11
 //
 // A receiver asks the densest map that holds it, whatever cell its bin is in, so that what a cell
-// covers does not bound what its map is asked about: the read-back's pixels do.
+// covers does not bound what its map is asked about: the read-back's pixels do, and of the finer
+// cover what must have room.
 #pragma once
 
 #include <Eigen/Core>
@@ -33,8 +34,8 @@ struct MapDepths {
   bool Fits() const;  // but for rounding
 };
 
-// Element k is of the map k. Of `fit` counts the cover; `guard_texels` as PlanLookUp has them. Of
-// no use once a StopScope says so.
+// Element k is of the map k. Of `fit` counts the cover, finer or not; `guard_texels` as PlanLookUp
+// has them. Of no use once a StopScope says so.
 ScratchVector<MapDepths> FindMapDepths(const LightView& view,
                                        const FitOptions& fit,
                                        absl::Span<const RayMap> maps,

@@ -67,15 +67,18 @@ void PixelRays::AddCorners(int x,
   }
 }
 
-DepthRange DistancesFromLight(const Surfaces& surfaces, const Light& light) {
+double DistanceFromLight(const Light& light, const Eigen::Vector3d& world) {
   const Eigen::Vector4d position = light.HomogeneousPosition();
+  return position.w() > 0.0 ? (world - position.head<3>()).norm() : -position.head<3>().dot(world);
+}
+
+DepthRange DistancesFromLight(const Surfaces& surfaces, const Light& light) {
   DepthRange distance = {std::numeric_limits<double>::infinity(),
                          -std::numeric_limits<double>::infinity()};
   ForEachTile(surfaces.tiles.grids[0], [&](const DepthTile& tile) {
     for (const Eigen::Vector4d& corner : Corners(tile)) {
       const Eigen::Vector3d world = (surfaces.world_from_screen * corner).hnormalized();
-      const double at =
-          position.w() > 0.0 ? (world - position.head<3>()).norm() : -position.head<3>().dot(world);
+      const double at = DistanceFromLight(light, world);
       distance = {std::min(distance.near, at), std::max(distance.far, at)};
     }
   });

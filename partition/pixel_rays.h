@@ -52,7 +52,10 @@ class PixelRays {
   Eigen::Matrix<double, 3, 4> ray_from_screen_;
 };
 
-// Of all receivers in the read-back: from a point light, or along a directional one's travel.
+// Of a world point: from a point light, or along a directional one's travel.
+double DistanceFromLight(const Light& light, const Eigen::Vector3d& world);
+
+// The same of all receivers in the read-back.
 DepthRange DistancesFromLight(const Surfaces& surfaces, const Light& light);
 
 }  // namespace lightfit

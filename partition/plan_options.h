@@ -24,9 +24,9 @@ struct PlanOptions {
 
   // Whether plans of fewer maps, one included, are tried too and the one taken of which the fewest
   // wrong pixels are foretold (ForetellWrongShare()), more maps only for 5 % less; with
-  // BorderChoice::kAutomatic in either border. Else the plan of `max_maps` is taken as it is, in
-  // less time: docs/plans.md says how much. Without the third state (Readback::facing_bits)
-  // forecasts rank plans too badly, and it is taken in any case.
+  // BorderChoice::kAutomatic in either border, and with and without the finer cover. Else the plan
+  // of `max_maps` is taken as it is, in less time: docs/plans.md says how much. Without the third
+  // state (Readback::facing_bits) forecasts rank plans too badly, and it is taken in any case.
   bool choose_by_forecast = true;
 
   // Of all maps together; never exceeded.

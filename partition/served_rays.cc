@@ -10,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include "absl/types/span.h"
 #include "base/stop.h"
 #include "geometry/convex_hull.h"
 #include "optimizer/energy/footprint.h"
@@ -33,10 +34,72 @@ struct Item {
   std::tuple<int, int, int> Key() const { return {boundary, y, x}; }
 };
 
+// A cell of the finer cover that no bin of pixels holds.
+struct FineItem {
+  Eigen::Vector3d direction;  // of its ray, unit
+  double distance = 0.0;      // from a point light
+  int index = 0;
+
+  int Key() const { return index; }
+};
+
+// Beyond, the plane across the middle of a bin stretches too much.
+constexpr double kLeastCos = 0.1;
+
+// The cones that bins of pixels cover.
+class PixelCones {
+ public:
+  PixelCones(const ServedRays& rays, const Readback& readback)
+      : readback_(readback),
+        bin_of_(static_cast<size_t>(readback.width()) * readback.height(), -1) {
+    for (size_t i = 0; i < rays.bins.size(); ++i) {
+      const RayBin& bin = rays.bins[i];
+      for (int at = bin.pixels_begin; at < bin.pixels_end; ++at) {
+        bin_of_[readback.Index(rays.pixels[at].x(), rays.pixels[at].y())] = static_cast<int>(i);
+      }
+      AddSides(bin);
+    }
+  }
+
+  // The bin of the pixel that a cell of the finer cover lies in, if it holds the ray; else -1.
+  int HolderOf(const Eigen::Vector4d& cell, const Eigen::Vector3d& ray) const {
+    const FineCover& fine = *readback_.fine_cover;
+    const int x = static_cast<int>(cell.x() * readback_.width() / fine.columns);
+    const int y = static_cast<int>(cell.y() * readback_.height() / fine.rows);
+    const int bin = bin_of_[readback_.Index(x, y)];
+    if (bin < 0) return -1;
+    const size_t begin = bin == 0 ? 0 : sides_end_[bin - 1], end = sides_end_[bin];
+    for (size_t i = begin; i < end; ++i) {
+      if (sides_[i].dot(ray) < 0.0) return -1;
+    }
+    return begin < end ? bin : -1;
+  }
+
+ private:
+  // None where the hull is not known to be one: ExtremeRays().
+  void AddSides(const RayBin& bin) {
+    const size_t n = bin.hull.size();
+    const bool is_cone =
+        n >= 3 && std::all_of(bin.hull.begin(), bin.hull.end(), [&](const auto& ray) {
+          return bin.middle.dot(ray) > kLeastCos * ray.norm();
+        });
+    for (size_t i = 0; is_cone && i < n; ++i) {
+      sides_.push_back(bin.hull[i].cross(bin.hull[(i + 1) % n]));
+    }
+    sides_end_.push_back(sides_.size());
+  }
+
+  const Readback& readback_;
+  ScratchVector<int> bin_of_;             // by pixel
+  ScratchVector<Eigen::Vector3d> sides_;  // of all cones, inward; by bin
+  ScratchVector<size_t> sides_end_;
+};
+
 class Finder {
  public:
   Finder(const LightView& view, const FitOptions& fit, const ServedRaysOptions& options)
       : view_(view),
+        fit_(fit),
         options_(options),
         surfaces_(*view.surfaces),
         metric_(WeightsOf(fit.metric, fit.along_edge_share)),
@@ -58,6 +121,7 @@ class Finder {
                   MostInLeaf(items_.size(), options_.max_bins),
                   [this](size_t begin, size_t end) { AddBin(begin, end); });
     }
+    AddFineCover();
     WeighFloor();
     if (absl::Status status = CheckStop(*view_.light); !status.ok()) return status;
     return std::move(result_);
@@ -100,9 +164,7 @@ class Finder {
         continue;
       }
       result_.pixels.push_back({item.x, item.y});
-      const double distance = DistanceOf(item);
-      bin.distance.near = std::min(bin.distance.near, distance);
-      bin.distance.far = std::max(bin.distance.far, distance);
+      Widen(DistanceOf(item), &bin.distance);
       ++bin.num_covered;
       AddCovered(item, &rays);
     }
@@ -111,6 +173,61 @@ class Finder {
     bin.pixels_end = static_cast<int>(result_.pixels.size());
     if (!rays.empty()) bin.hull = ExtremeRays(rays, bin.middle);
     result_.bins.push_back(std::move(bin));
+  }
+
+  // Widens the distances of the bins that hold cells already, and adds bins of the other cells.
+  void AddFineCover() {
+    const ScratchVector<FineSurfaces> fine = FineSurfacesServed(view_, fit_);
+    if (fine.empty()) return;
+    const PixelCones cones(result_, surfaces_.readback);
+    ScratchVector<FineItem> items;
+    for (const FineSurfaces& layer : fine) {
+      const Matrix34d ray_from_screen = result_.normalized_from_ray * layer.ray_from_screen;
+      layer.ForEach([&](const Eigen::Vector4d& cell) {
+        const Eigen::Vector3d direction = (ray_from_screen * cell).normalized();
+        const Eigen::Vector3d world = (layer.surfaces.world_from_screen * cell).hnormalized();
+        const double distance = DistanceFromLight(*view_.light, world);
+        Widen(distance, &result_.distance);
+        result_.has_single_cover = result_.has_single_cover && direction.z() > 0.0;
+        const int holder = cones.HolderOf(cell, direction);
+        if (holder >= 0) {
+          Widen(distance, &result_.bins[holder].distance);
+        } else {
+          items.push_back({direction, distance, static_cast<int>(items.size())});
+        }
+      });
+    }
+    if (items.empty()) return;
+    // However few there are: they may lie far apart.
+    const auto max_bins = static_cast<size_t>(options_.max_fine_bins);
+    ForEachLeaf(items,
+                0,
+                items.size(),
+                (items.size() + max_bins - 1) / max_bins,
+                [&](size_t begin, size_t end) {
+                  AddFineBin(absl::MakeConstSpan(items).subspan(begin, end - begin));
+                });
+  }
+
+  void AddFineBin(absl::Span<const FineItem> items) {
+    RayBin bin;
+    bin.samples_begin = bin.samples_end = static_cast<int>(result_.samples.size());
+    bin.pixels_begin = bin.pixels_end = static_cast<int>(result_.pixels.size());
+    bin.middle = Eigen::Vector3d::Zero();
+    ScratchVector<Eigen::Vector3d> rays;
+    for (const FineItem& item : items) {
+      bin.middle += item.direction;
+      rays.push_back(item.direction);
+      Widen(item.distance, &bin.distance);
+    }
+    bin.middle.normalize();
+    bin.hull = ExtremeRays(rays, bin.middle);
+    result_.bins.push_back(std::move(bin));
+  }
+
+  static void Widen(double distance, DepthRange* range) {
+    range->near = std::min(range->near, distance);
+    range->far = std::max(range->far, distance);
   }
 
   // From the light, of a covered pixel.
@@ -168,6 +285,7 @@ class Finder {
   }
 
   const LightView& view_;
+  const FitOptions& fit_;
   const ServedRaysOptions& options_;
   const Surfaces& surfaces_;
   MetricWeights metric_;
@@ -182,7 +300,6 @@ class Finder {
 
 ScratchVector<Eigen::Vector3d> ExtremeRays(const ScratchVector<Eigen::Vector3d>& rays,
                                            const Eigen::Vector3d& middle) {
-  constexpr double kLeastCos = 0.1;  // beyond, the plane across the middle stretches too much
   const Eigen::Matrix3d frame = FrameAlong(middle);
   ScratchVector<Eigen::Vector2d> points;
   for (const Eigen::Vector3d& ray : rays) {
@@ -195,6 +312,13 @@ ScratchVector<Eigen::Vector3d> ExtremeRays(const ScratchVector<Eigen::Vector3d>&
     hull.push_back(frame.transpose() * point.homogeneous());
   }
   return hull;
+}
+
+ScratchVector<FineSurfaces> FineSurfacesServed(const LightView& view, const FitOptions& fit) {
+  const bool covers_all =
+      fit.cover == Cover::kReceivers || (view.cover.ok() && view.cover->nothing_to_cover);
+  if (covers_all || !fit.use_fine_cover) return {};
+  return FindFineSurfaces(*view.surfaces, *view.light, view.border);
 }
 
 absl::StatusOr<ServedRays> FindServedRays(const LightView& view,

@@ -131,7 +131,9 @@ int NumMapsAround(const CellFitter& fitter, int least) {
 absl::StatusOr<int> NumMapsAround(const LightView& view, const FitOptions& fit) {
   // A view has no cover for another reason too: all receivers in one plane with the light.
   if (view.cover.status() != SurroundedError(*view.light)) return 0;
-  const absl::StatusOr<ServedRays> rays = FindServedRays(view, fit);
+  FitOptions coarse = fit;
+  coarse.use_fine_cover = false;  // left out where it wants more maps than there may be
+  const absl::StatusOr<ServedRays> rays = FindServedRays(view, coarse);
   if (!rays.ok()) return rays.status();
   const int num_maps = NumMapsAround(CellFitter(*rays, *view.light, fit), 2);
   if (absl::Status status = CheckStop(*view.light); !status.ok()) return status;

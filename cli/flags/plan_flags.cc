@@ -22,7 +22,6 @@ constexpr Unused kUnusedByPlans[] = {
     {"--as-published", "the published algorithm has one map"},
     {"--search", "the maps of a plan are searched in one way"},
     {"--affine", "the maps of a plan are parallelograms of least energy"},
-    {"--cover-readback", "plans do not look at a finer read-back yet"},
     {"--summary", "a plan is fitted to the pixels of a read-back, and a summary has none"},
     {"--replace-below", "a plan is kept by its energy; --stability says for how much of it"},
     {"--rounds", "the plan of a shot is fitted to its samples, and weighs them as it goes"},

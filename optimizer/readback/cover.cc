@@ -14,7 +14,7 @@
 #include "geometry/ray_cone.h"
 #include "optimizer/readback/cover_hull.h"
 #include "optimizer/readback/covered_surfaces.h"
-#include "optimizer/readback/fine_cover.h"
+#include "optimizer/readback/fine_surfaces.h"
 #include "optimizer/readback/needed_surfaces.h"
 
 namespace lightfit {
@@ -33,36 +33,6 @@ struct Layer {
   const DepthTiles* tiles;
   Matrix34d ray_from_screen;
 };
-
-// One image of the finer cover and what is to be covered in it.
-struct FineSurfaces {
-  Surfaces surfaces;
-  DepthTiles tiles;
-  Matrix34d ray_from_screen;
-
-  Layer layer() const { return {&tiles, ray_from_screen}; }
-};
-
-// Those that have anything to be covered.
-ScratchVector<FineSurfaces> FindFineSurfaces(const Surfaces& surfaces,
-                                             const Light& light,
-                                             Border border) {
-  const Readback& readback = surfaces.readback;
-  ScratchVector<FineSurfaces> found;
-  if (readback.fine_cover == nullptr) return found;
-  const FineCover& fine = *readback.fine_cover;
-  const absl::Span<const uint32_t> words = fine.NeededBits(border, light.shadow_bit);
-  if (words.empty()) return found;
-  for (int i = 0; i < NumFineLayers(fine); ++i) {
-    FineSurfaces layer = {Surfaces(FineLayer(readback, i, words), surfaces.options), {}, {}};
-    layer.tiles = BuildDepthTiles(layer.surfaces.readback,
-                                  layer.surfaces.affine_depth,
-                                  {words, uint32_t{1} << light.shadow_bit});
-    layer.ray_from_screen = RayFromWorld(light) * layer.surfaces.world_from_screen;
-    if (layer.tiles.num_surfaces > 0) found.push_back(std::move(layer));
-  }
-  return found;
-}
 
 // An axis that has all boxes of the grids in front of it; of coarse ones where `level` is above 0.
 std::optional<Eigen::Vector3d> AxisOfBoxes(absl::Span<const Layer> layers, size_t level) {
@@ -205,7 +175,9 @@ absl::StatusOr<RayCover> CoverReceivers(
   bool one_by_one = false;
   if (light.kind == Light::Kind::kPoint) {
     ScratchVector<Layer> layers = {{&tiles, ray_from_screen}};
-    for (const FineSurfaces& layer : fine) layers.push_back(layer.layer());
+    for (const FineSurfaces& layer : fine) {
+      layers.push_back({&layer.tiles, layer.ray_from_screen});
+    }
     std::optional<Eigen::Vector3d> axis = AxisOfBoxes(layers);
     if (!axis.has_value() && !fine.empty()) {
       fine.clear();

@@ -24,6 +24,12 @@ BorderChoice ChoiceOf(Border border) {
 
 Border OtherThan(Border border) { return border == Border::kDark ? Border::kLit : Border::kDark; }
 
+// Which map holds what is known of the read-back's pixels alone.
+PlanTrackerOptions WithoutFineCover(PlanTrackerOptions options) {
+  options.plan.fit.use_fine_cover = false;
+  return options;
+}
+
 // What a frame's own fit found, or why there is none; nothing where nobody has asked yet.
 using OwnPlan = std::optional<absl::StatusOr<LightPlan>>;
 
@@ -35,10 +41,10 @@ class FrameTracker {
       : surfaces_(surfaces),
         state_(state),
         light_(state.light),
-        options_(options),
-        tight_(options.plan),
-        view_fit_(options.plan.fit),
-        roomy_fit_(options.plan.fit),
+        options_(WithoutFineCover(options)),
+        tight_(options_.plan),
+        view_fit_(options_.plan.fit),
+        roomy_fit_(options_.plan.fit),
         is_update_(state.maps.empty() ||
                    state.frames_since_update + 1 >= options.update_every_frames) {
     view_fit_.border = BorderChoice::kAutomatic;  // that of the view
@@ -308,7 +314,7 @@ class FrameTracker {
   const Surfaces& surfaces_;
   const TrackedPlanState& state_;
   const Light& light_;
-  const PlanTrackerOptions& options_;
+  const PlanTrackerOptions options_;
   PlanOptions tight_;  // with the border in use
   FitOptions view_fit_, roomy_fit_;
   bool is_update_;

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, Optional, Sequence
 
 from lightfit.answers import Answers
+from lightfit.cover import FineCover
 from lightfit.inputs import AnyCamera, Clip, Lights, Options, Path_, PlanOptions, plan_message
 from lightfit.request import fit_request, readback_parts, track_setup
 from lightfit.result import FitResult
@@ -28,6 +29,7 @@ class PlanCalls(Answers):
         foretell_wrong: bool = False,
         facing: Any = None,
         mapped: Any = None,
+        cover: Optional[FineCover] = None,
         source: str = "",
         timeout_s: Optional[float] = None,
         request_id: Optional[str] = None,
@@ -45,7 +47,7 @@ class PlanCalls(Answers):
         A lamp among its receivers, which no single map serves, has a plan: its status says how many
         maps would do where there are too few.
         """
-        parts = readback_parts(depth, shadow, camera, lights, source, facing, mapped)
+        parts = readback_parts(depth, shadow, camera, lights, source, facing, mapped, cover)
         request = fit_request(parts, plan_message(plan), options, clip, foretell_wrong)
         return FitResult.of(self._fit(request, parts.pixels, timeout_s, request_id))
 

@@ -9,11 +9,17 @@
 #include "calls/allocate_call.h"
 #include "calls/fit_call.h"
 #include "calls/summary_call.h"
+#include "io/fine_cover_exr.h"
+#include "io/readback_exr.h"
+#include "io/readback_exr_write.h"
 #include "tests/calls/requests.h"
 #include "tests/cli/allocations.h"
 #include "tests/cli/summaries.h"
 #include "tests/io/summary_examples.h"
+#include "tests/testing/box_scene.h"
 #include "wire/allocation_json.h"
+#include "wire/light_proto.h"
+#include "wire/proto_json.h"
 
 namespace lightfit {
 namespace {
@@ -143,6 +149,50 @@ TEST(CommandLine, PlansAreTheSame) {
     options->mutable_each()->set_width(256);
     options->mutable_each()->set_height(128);
   });
+}
+
+// With a finer image of the same frame, borders chosen.
+TEST(CommandLine, PlansWithAFinerCoverAreTheSame) {
+  const TemporaryFolder folder;
+  const BoxScene scene = MakeBoxScene(21);
+  const std::vector<Light> lights = RandomLights(scene, 21, 2);
+  v1::LightList list;
+  for (const Light& light : lights) *list.add_lights() = LightToProto(light);
+  WriteFile(folder.Path("lights.json"), ProtoToJson(list).value());
+  const auto write = [&](const std::string& path, int width, int height) {
+    const SyntheticReadback image = Render(scene, RandomCamera(scene, 21, width, height), lights);
+    ASSERT_THAT(WriteReadbackExr(path, image.ViewWithFacing(), lights), testing::IsOk());
+  };
+  const std::string coarse = folder.Path("coarse.exr"), fine = folder.Path("fine.exr");
+  write(coarse, 60, 40);
+  write(fine, 240, 160);
+  const std::string path = folder.Path("plan.json");
+  ASSERT_EQ(RunLightfit({"fit",
+                         coarse,
+                         "--lights",
+                         folder.Path("lights.json"),
+                         "--cover-readback",
+                         fine,
+                         "--maps",
+                         "2",
+                         "--texels",
+                         "90000",
+                         "--quiet",
+                         "--json",
+                         path})
+                .exit_code,
+            0);
+  const ReadbackFile file = ReadReadbackExr(coarse, lights).value();
+  auto request = testing::RequestOf<v1::FitRequest>(file.View(), lights);
+  const FineCoverFile fine_file = ReadFineCoverExr(fine, lights, {}, file).value();
+  *request.mutable_readback()->mutable_fine_cover() = testing::FineCoverMessage(fine_file.View());
+  request.set_foretell_wrong(true);
+  request.mutable_options()->set_border(v1::BORDER_CHOICE_AUTOMATIC);
+  request.mutable_plan_options()->set_max_maps(2);
+  request.mutable_plan_options()->set_texels(90000);
+  const auto result = AnswerFit(request, CallContext());
+  ASSERT_THAT(result, testing::IsOk());
+  EXPECT_EQ(JsonWithoutSource(*result), JsonWithoutSource(WithoutYardsticks(ReadResult(path))));
 }
 
 }  // namespace

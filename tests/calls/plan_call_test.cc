@@ -146,6 +146,44 @@ TEST(PlanCall, ALampIsNotToldOfMoreMapsThanTheServerTakes) {
   EXPECT_EQ(num_lamps, 1);
 }
 
+// What lies outside of the pixels' shadow has room, as in the library.
+TEST(PlanCall, TakesAFinerCover) {
+  testing::PlaneReadback floor = testing::FloorReadback();
+  floor.Cast(0, [](int x, int y) { return x > 12 && x < 25 && y > 8 && y < 20; });
+  testing::PlaneReadback fine =
+      testing::FloorReadback(testing::FloorCamera(3 * floor.camera.width, 3 * floor.camera.height));
+  fine.Cast(0, [](int x, int y) { return x > 30 && x < 95 && y > 21 && y < 60; });
+  FineCover cover;
+  cover.columns = fine.camera.width;
+  cover.rows = fine.camera.height;
+  cover.nearest = fine.depth;
+  cover.shadow_bits = fine.shadow_bits;
+  const std::vector<Light> lights = {Light::Point("lamp", {1.0, 2.0, 5.0}, 0)};
+  Readback readback = floor.View();
+  v1::FitRequest request = testing::RequestOf<v1::FitRequest>(readback, lights);
+  request.mutable_plan_options()->set_max_maps(2);
+  request.mutable_plan_options()->set_texels(4096);
+  const v1::FitResult without = Answered(request);
+  readback.fine_cover = &cover;
+  *request.mutable_readback()->mutable_fine_cover() = testing::FineCoverMessage(cover);
+  const v1::FitResult with = Answered(request);
+  PlanOptions options;
+  options.max_maps = 2;
+  options.texels = 4096;
+  const auto surfaces = FindSurfaces(readback, LightMask(lights), {});
+  ASSERT_THAT(surfaces, testing::IsOk());
+  const auto plan = FitPlan(*surfaces, lights[0], options);
+  ASSERT_THAT(plan, testing::IsOk());
+  EXPECT_EQ(
+      with.lights(0).plan().SerializeAsString(),
+      PlanToProto(*plan, lights[0], ClipConvention::Vulkan(), 0.0, true)->SerializeAsString());
+  EXPECT_NE(with.lights(0).plan().SerializeAsString(),
+            without.lights(0).plan().SerializeAsString());
+  request.mutable_options()->set_use_fine_cover(false);
+  EXPECT_EQ(Answered(request).lights(0).plan().SerializeAsString(),
+            without.lights(0).plan().SerializeAsString());
+}
+
 TEST(PlanCall, ALightThatCannotBeUsedFailsAlone) {
   v1::FitRequest request = FloorRequest();
   const v1::FitResult both = Answered(request);

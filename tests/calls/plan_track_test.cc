@@ -61,6 +61,23 @@ TrackSession Begun(const v1::TrackSetup& setup) {
   return *std::move(session);
 }
 
+TEST(PlanTrack, SaysThatItDoesNotLookAtAFinerCover) {
+  const Frames frames(1);
+  Readback readback = frames.files[0].View();
+  FineCover cover;
+  cover.columns = readback.width();
+  cover.rows = readback.height();
+  cover.nearest = readback.depth;
+  cover.shadow_bits = readback.shadow_bits;
+  readback.fine_cover = &cover;
+  TrackSession session = Begun(SetupFor(0.5));
+  const v1::TrackResult answer = session.Update(frames.messages[0], readback, {});
+  EXPECT_EQ(answer.status().code(), static_cast<int>(absl::StatusCode::kInvalidArgument));
+  EXPECT_THAT(
+      answer.status().message(),
+      ::testing::HasSubstr("readback.fine_cover: plans that are tracked do not look at it"));
+}
+
 TEST(PlanTrack, DoesWhatTheTrackerDoes) {
   const Frames frames(4);
   int num_kept = 0;

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -10,12 +12,21 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
+#include "io/fine_cover_exr.h"
+#include "io/lights_file.h"
+#include "io/readback_exr.h"
 #include "io/readback_exr_write.h"
+#include "optimizer/fit.h"
+#include "optimizer/readback/surfaces.h"
+#include "partition/evaluate_plan.h"
+#include "partition/plan.h"
 #include "tests/cli/examples.h"
 #include "tests/cli/summaries.h"
+#include "tests/partition/receivers.h"
 #include "tests/testing/box_scene.h"
 #include "tests/testing/process.h"
 #include "wire/light_proto.h"
+#include "wire/plan_proto.h"
 #include "wire/proto_json.h"
 
 namespace lightfit {
@@ -74,6 +85,43 @@ TEST_F(FitHall, WithACoverReadbackHasATableWithBorders) {
   EXPECT_TRUE(differs);
 }
 
+// Of a real renderer. Chosen by forecast: with the finer image fewer wrong pixels are foretold than
+// of the plan that does not look at it, as the finer image tells of both.
+TEST(FitCoverReadback, MakesPlansBetterByForecast) {
+  const std::string coarse = RepositoryPath("../shared/readbacks/room_180_facing/0001.exr");
+  const std::string fine = RepositoryPath("../shared/readbacks/room_750_facing/0001.exr");
+  const std::string lights = RepositoryPath("../shared/readbacks/room_180_facing/scene.json");
+  for (const std::string& path : {coarse, fine, lights}) {
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << "no read-back at " << path;
+  }
+  const TemporaryFolder folder;
+  const std::string with = folder.Path("with.json"), without = folder.Path("without.json");
+  const Arguments fit = {
+      "fit", coarse, "--lights", lights, "--only", "sun", "--maps", "3", "--texels", "300x300"};
+  const ProcessResult result = RunLightfit(Joined(fit, {"--cover-readback", fine, "--json", with}));
+  EXPECT_EQ(result.err, "");
+  ASSERT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.out, HasSubstr("light  border  maps"));
+  ASSERT_EQ(RunLightfit(Joined(fit, {"--json", without})).exit_code, 0);
+
+  const std::vector<Light> all = ReadLightsFile(lights).value();
+  const auto sun =
+      std::find_if(all.begin(), all.end(), [](const Light& light) { return light.name == "sun"; });
+  ASSERT_NE(sun, all.end());
+  const ReadbackFile file = ReadReadbackExr(coarse, all).value();
+  const FineCoverFile fine_file = ReadFineCoverExr(fine, all, {}, file).value();
+  const FineCover cover = fine_file.View();
+  Readback readback = file.View();
+  readback.fine_cover = &cover;
+  const auto foretold = [&](const std::string& json) {
+    const v1::FitResult fitted = ReadResult(json);
+    EXPECT_EQ(fitted.lights_size(), 1);
+    const Plan plan = PlanFromProto(fitted.lights(0).plan(), "plan").value();
+    return ForetellPlan(readback, *sun, plan, {}).value();
+  };
+  EXPECT_LT(foretold(with), foretold(without));
+}
+
 TEST_F(FitHall, RefusesACoverReadbackThatIsSmaller) {
   ExpectError(RunLightfit({"fit", hall_750, "--lights", lights, "--cover-readback", hall_180}),
               2,
@@ -94,10 +142,12 @@ struct BoxFiles {
   std::string Write(const std::string& name,
                     int width,
                     int height,
-                    uint64_t camera_seed = 5) const {
+                    uint64_t camera_seed = 5,
+                    bool with_facing = true) const {
     const SyntheticReadback image =
         Render(scene, RandomCamera(scene, camera_seed, width, height), lights);
-    const absl::Status status = WriteReadbackExr(folder.Path(name), image.ViewWithFacing(), lights);
+    const absl::Status status = WriteReadbackExr(
+        folder.Path(name), with_facing ? image.ViewWithFacing() : image.View(), lights);
     EXPECT_TRUE(status.ok()) << status;
     return folder.Path(name);
   }
@@ -122,6 +172,42 @@ TEST(FitCoverReadback, MustBeLargerAndOfTheSameView) {
   const ProcessResult good =
       files.Fit(coarse, {"--cover-readback", files.Write("fine.exr", 192, 128)});
   EXPECT_EQ(good.exit_code, 0) << good.err;
+}
+
+// What a renderer does with the file: nothing dark that the finer image shows is outside of all
+// maps where a lit border is asked for and facing is not known; without the finer image something
+// is.
+TEST(FitCoverReadback, PlansHaveRoomForWhatItShows) {
+  const BoxFiles files;
+  const std::string coarse = files.Write("coarse.exr", 60, 40, 5, /*with_facing=*/false);
+  const std::string fine = files.Write("fine.exr", 480, 320, 5, /*with_facing=*/false);
+  const std::string json = files.folder.Path("plan.json");
+  const SyntheticReadback image =
+      Render(files.scene, RandomCamera(files.scene, 5, 480, 320), files.lights);
+  const Surfaces surfaces = *FindSurfaces(image.View(), LightMask(files.lights), {});
+  const auto num_lost = [&](const Arguments& more) {
+    const ProcessResult result = files.Fit(
+        coarse, Joined({"--maps", "3", "--border", "lit", "--json", json, "--quiet"}, more));
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.err, IsEmpty());
+    const v1::FitResult fitted = ReadResult(json);
+    EXPECT_EQ(fitted.lights_size(), static_cast<int>(files.lights.size()));
+    int num_lost = 0;
+    for (int l = 0; l < fitted.lights_size(); ++l) {
+      const Light& light = files.lights[l];
+      const Plan plan = PlanFromProto(fitted.lights(l).plan(), "plan").value();
+      EXPECT_EQ(plan.maps.size(), 3u);
+      const PlanLookUp look_up = PlanLookUp::Create(plan, light).value();
+      testing::ForEachReceiver(
+          surfaces,
+          surfaces.readback.shadow_bits,
+          uint32_t{1} << light.shadow_bit,
+          [&](const Eigen::Vector3d& world) { num_lost += look_up.At(world).map < 0 ? 1 : 0; });
+    }
+    return num_lost;
+  };
+  EXPECT_EQ(num_lost({"--cover-readback", fine}), 0);
+  EXPECT_GT(num_lost({}), 20);
 }
 
 // Less than was asked for is no error, but is said.

@@ -263,7 +263,6 @@ TEST(FitPlan, RefusesWhatDoesNotGoTogether) {
   refused({"--maps", "2", "--search", "line"}, {"--maps", "--search"});
   refused({"--maps", "2", "--affine", "skewed"}, {"--maps", "--affine"});
   refused({"--maps", "2", "--as-published"}, {"--maps", "--as-published"});
-  refused({"--maps", "2", "--cover-readback", kYard}, {"--maps", "--cover-readback"});
   const TemporaryFolder folder;
   ExpectError(RunLightfit({"fit", "--summary", YardSummary(folder, "a.summary"), "--maps", "2"}),
               1,

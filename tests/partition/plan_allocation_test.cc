@@ -9,12 +9,14 @@
 #include "partition/tracking/plan_tracker.h"
 #include "tests/partition/tracking/plan_walk.h"
 #include "tests/testing/allocation_counter.h"
+#include "tests/testing/fine_image.h"
 #include "tests/testing/frame_loop.h"
 #include "tests/testing/test_scene.h"
 
 namespace lightfit {
 namespace {
 
+using testing::FineImage;
 using testing::NumAllocations;
 using testing::PlanWalk;
 using testing::TestScene;
@@ -22,11 +24,15 @@ using testing::TestScene;
 TEST(FitPlan, AllocatesNothingFromAWarmPool) {
   constexpr int kNumRounds = 4;
   const TestScene scene(/*seed=*/1, 3, 96, 64);
-  const Readback readback = scene.readback.ViewWithFacing();
+  const TestScene large(/*seed=*/1, 3, 192, 128);
+  const FineImage fine(large.readback);
+  Readback readback = scene.readback.ViewWithFacing();
   PlanOptions options;
   options.max_maps = 4;
-  for (const bool choose : {false, true}) {
+  for (const auto& [choose, is_fine] :
+       {std::pair(false, false), {true, false}, {false, true}, {true, true}}) {
     options.choose_by_forecast = choose;
+    readback.fine_cover = is_fine ? &fine.cover : nullptr;
     ScratchPool pool;
     for (int round = 0; round < kNumRounds; ++round) {
       const ScratchScope scope(&pool);

@@ -165,7 +165,31 @@ def test_what_is_wrong_with_a_cover_is_said() -> None:
     refused(lightfit.FineCover(fine[0], fine[1], fine[1], lit=fine[1]), "not both")
 
 
-def test_plans_do_without(files: Any) -> None:
+@pytest.mark.parametrize("border", ["lit", "auto"])
+def test_plans_look_at_it_as_those_of_the_program_do(
+    files: Any, tmp_path: pathlib.Path, run_lightfit: Any, client: Any, border: str
+) -> None:
     small, large, lights = files
-    with pytest.raises(lightfit.InvalidArgumentError, match="plans do not look at it yet"):
-        lightfit.fit_plan_exr(small, lights, cover=large)
+    json = tmp_path / "plan.json"
+    run_lightfit("fit", small, "--lights", lights, "--maps", 2, "--texels", 90000, "--border", border,
+                 "--cover-readback", large, "--json", json, "--quiet")
+    want = json_format.Parse(json.read_text(), result_pb2.FitResult())
+    plan = {"max_maps": 2, "texels": 90000}
+    options = {"border": border}
+    result = lightfit.fit_plan_exr(small, lights, plan, options=options, cover=large)
+    assert result.ok
+    assert [light.plan for light in result.message.lights] == [light.plan for light in want.lights]
+    served = client.fit_plan_exr(small, lights, plan, options=options, cover=large)
+    assert served.message == result.message
+    without = lightfit.fit_plan_exr(small, lights, plan, options=options)
+    assert any(
+        one.plan != other.plan
+        for one, other in zip(result.message.lights, without.message.lights)
+    )
+
+
+def test_plans_that_are_tracked_do_without() -> None:
+    small, large = large_readback(60, 40), large_readback(240, 160)
+    with lightfit.track_plan({"max_maps": 2, "texels": 9000}) as track:
+        with pytest.raises(lightfit.InvalidArgumentError, match="tracked do not look at it"):
+            track.update(0, *small, cover=lightfit.FineCover(large[0], large[1]))

@@ -14,12 +14,14 @@
 #include "optimizer/light_view.h"
 #include "optimizer/readback/cover.h"
 #include "optimizer/readback/needed_surfaces.h"
+#include "tests/testing/fine_image.h"
 #include "tests/testing/matchers.h"
 #include "tests/testing/test_scene.h"
 
 namespace lightfit {
 namespace {
 
+using testing::FineImage;
 using ::testing::HasSubstr;
 using testing::IsOk;
 using testing::StatusIs;
@@ -181,41 +183,6 @@ TEST(CoverDark, WhereNothingIsLitEveryReceiverIsCovered) {
   EXPECT_TRUE(dark->nothing_to_cover);
   EXPECT_EQ(dark->normalized_from_ray, all->normalized_from_ray);
 }
-
-// A finer image of the same view, as cells of one pixel or reduced by blocks of pixels.
-struct FineImage {
-  FineCover cover;
-  std::vector<float> nearest, furthest;
-  std::vector<uint32_t> shadow, lit;
-
-  FineImage(const SyntheticReadback& image, int block) {
-    cover.columns = image.camera.width / block;
-    cover.rows = image.camera.height / block;
-    for (int y = 0; y < cover.rows; ++y) {
-      for (int x = 0; x < cover.columns; ++x) {
-        float near = kSyntheticBackground, far = 0.0f;
-        uint32_t any_shadow = 0, any_lit = 0;
-        for (int i = 0; i < block * block; ++i) {
-          const size_t pixel = static_cast<size_t>(y * block + i / block) * image.camera.width +
-                               x * block + i % block;
-          if (!(image.depth[pixel] < kSyntheticBackground)) continue;
-          near = std::min(near, image.depth[pixel]);
-          far = std::max(far, image.depth[pixel]);
-          any_shadow |= image.shadow_bits[pixel] & image.facing_bits[pixel];
-          any_lit |= image.facing_bits[pixel] & ~image.shadow_bits[pixel];
-        }
-        nearest.push_back(near);
-        furthest.push_back(far > 0.0f ? far : kSyntheticBackground);
-        shadow.push_back(any_shadow);
-        lit.push_back(any_lit);
-      }
-    }
-    cover.nearest = nearest;
-    if (block > 1) cover.furthest = furthest;
-    cover.shadow_bits = shadow;
-    cover.lit_bits = lit;
-  }
-};
 
 // Nothing that the border answers wrongly lies outside, not even what only the finer image shows;
 // and without it some does, or this would show nothing.
