@@ -2,8 +2,7 @@
 //
 // Wrong shadow pixels of many lights under every method, and the tables that they make.
 // In:   LightComparisons with the same rows.
-// Out:  text: totals and means as ratios, rankings by the worst lights, lights where ours is
-// behind.
+// Out:  text: ratios of totals and means, rankings by the worst lights, where ours is behind.
 #pragma once
 
 #include <cstdint>

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "absl/strings/str_format.h"
-#include "absl/strings/str_replace.h"
 #include "jobs/matrix_judge.h"
 #include "partition/fit_plan.h"
 #include "partition/fit_plans.h"
@@ -76,11 +75,8 @@ absl::StatusOr<std::optional<PlanOptions>> PlanOptionsOfBudget(const v1::Allocat
   absl::StatusOr<PlanOptions> options = PlanOptionsOf(given, request.options(), fit, limits);
   if (!options.ok()) return options.status();
   options->texels = budget;
-  if (absl::Status status = ValidateSharedBudget(num_lights, *options); !status.ok()) {
-    return absl::Status(
-        status.code(),
-        absl::StrReplaceAll(status.message(), {{"options.texels = ", "budget_texels = "}}));
-  }
+  absl::Status status = ValidateSharedBudget(num_lights, *options, "budget_texels =");
+  if (!status.ok()) return status;
   return std::optional<PlanOptions>(*options);
 }
 

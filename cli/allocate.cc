@@ -8,7 +8,6 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "absl/strings/str_replace.h"
 #include "base/number.h"
 #include "base/output_file.h"
 #include "base/progress.h"
@@ -46,12 +45,6 @@ absl::StatusOr<AllocationReport> Allocate(const AllocateFlags& flags, const Allo
       task.readback.has_value() ? flags.fit.readback_path : SourceText(flags.fit.summary_paths);
   report->fit.clip = flags.fit.clip;
   return report;
-}
-
-// The texels of plans are the budget here.
-absl::Status AboutBudget(const absl::Status& status) {
-  return absl::Status(status.code(),
-                      absl::StrReplaceAll(status.message(), {{"options.texels = ", "--budget "}}));
 }
 
 std::string SourceLine(const AllocateFlags& flags, const AllocateInputs& inputs) {
@@ -125,8 +118,9 @@ int RunAllocate(const AllocateFlags& flags) {
   const absl::StatusOr<AllocateInputs> inputs = ReadAllocateInputs(flags);
   if (!inputs.ok()) return Fail(kExitBadInput, inputs.status());
   if (const std::optional<PlanOptions>& plans = inputs->task.plans; plans.has_value()) {
-    status = ValidateSharedBudget(static_cast<int>(inputs->task.lights.size()), *plans);
-    if (!status.ok()) return Fail(kExitUsage, AboutBudget(status));
+    const auto num_lights = static_cast<int>(inputs->task.lights.size());
+    status = ValidateSharedBudget(num_lights, *plans, "--budget");
+    if (!status.ok()) return Fail(kExitUsage, status);
   }
 
   const absl::StatusOr<AllocationReport> report = Allocate(flags, inputs->task);

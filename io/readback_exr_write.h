@@ -2,8 +2,7 @@
 //
 // Read-backs as OpenEXR files, such as ReadReadbackExr() reads with its default options.
 // In:   a Readback with depth of kind kCameraZ, the lights of its shadow bits.
-// Out:  one file: depth as "Z" (float), per light "shadow.NAME" (half, 1 where blocked, else 0),
-// and
+// Out:  one file: depth as "Z" (float); per light "shadow.NAME" (half, 1 where blocked, else 0),
 //       likewise "facing.NAME" and "mapped.NAME" where the read-back knows them.
 //
 // The camera goes into worldToCamera and worldToNDC, as the OpenEXR standard has them. These are

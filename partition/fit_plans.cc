@@ -21,20 +21,26 @@ absl::Status Validate(absl::Span<const PlannedLight> lights, const PlanOptions& 
 
 }  // namespace
 
-absl::Status ValidateSharedBudget(int num_lights, const PlanOptions& options) {
-  if (options.each.has_value() || num_lights <= 1) return ValidatePlanOptions(options);
-  const int64_t least = LeastPlanTexels(options), share = options.texels / num_lights;
-  PlanOptions one = options;
-  one.texels = std::clamp(share, least, kMostPlanTexels);
-  if (absl::Status status = ValidatePlanOptions(one); !status.ok()) return status;
-  if (share == one.texels) return absl::OkStatus();
+absl::Status ValidateSharedBudget(int num_lights,
+                                  const PlanOptions& options,
+                                  absl::string_view texels_name) {
+  if (options.each.has_value()) return ValidatePlanOptions(options);
+  const int64_t num = std::max(1, num_lights);
+  PlanOptions most = options;
+  most.texels = kMostPlanTexels;
+  if (absl::Status status = ValidatePlanOptions(most); !status.ok()) return status;
+  const int64_t least = LeastPlanTexels(options), share = options.texels / num;
+  if (share >= least && share <= kMostPlanTexels) return absl::OkStatus();
   return absl::InvalidArgumentError(
-      absl::StrFormat("options.texels = %d, want %d ... %d for %d lights of up to %d maps each",
+      absl::StrFormat("%s %d, want %d ... %d for %d %s of up to %d maps%s",
+                      texels_name,
                       options.texels,
-                      least * num_lights,
-                      kMostPlanTexels * num_lights,
-                      num_lights,
-                      options.max_maps));
+                      least * num,
+                      kMostPlanTexels * num,
+                      num,
+                      num == 1 ? "light" : "lights",
+                      options.max_maps,
+                      num == 1 ? "" : " each"));
 }
 
 LightPlans FitPlans(const Surfaces& surfaces,

@@ -11,6 +11,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
 #include "absl/types/span.h"
 #include "base/scratch.h"
 #include "geometry/light.h"
@@ -26,8 +27,11 @@ struct PlannedLight {
 
 using LightPlans = ScratchVector<absl::StatusOr<LightPlan>>;
 
-// Of so many lights, which PlanOptions::texels are divided among. InvalidArgument names the field.
-absl::Status ValidateSharedBudget(int num_lights, const PlanOptions& options);
+// Of so many lights, which PlanOptions::texels are divided among. InvalidArgument names the field;
+// `texels_name` is what whoever asks writes before their number.
+absl::Status ValidateSharedBudget(int num_lights,
+                                  const PlanOptions& options,
+                                  absl::string_view texels_name = "options.texels =");
 
 // PlanOptions::texels are those of all lights together; never exceeded. Element i belongs to
 // lights[i] and has its own status; a light without a plan leaves its texels to the others. With

@@ -1,9 +1,7 @@
 // server/track_call.h
 //
 // The call Track: frames in, matrices out, one at a time.
-// In:   v1::TrackRequest: the setup, then frames, with chunks of pixels where a frame is larger
-// than
-//       a message.
+// In:   v1::TrackRequest: the setup, then frames, in chunks of pixels where a message is too small.
 // Out:  v1::TrackResult for each frame. The next frame is not read before that is written: a client
 //       that sends faster than frames are fitted waits in its own network layer.
 #pragma once

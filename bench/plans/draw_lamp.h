@@ -2,8 +2,7 @@
 //
 // Lamps with receivers all around them.
 // In:   a CompareStage, a seed.
-// Out:  a lamp in the middle of what the camera sees, with its read-back; the same for the same
-// seed.
+// Out:  a lamp in the middle of what the camera sees, with its read-back; the same for equal seeds.
 //
 // A lamp stands on the sight line of a pixel in the middle half of the picture, 30 to 90 % of the
 // way to what is seen there, or to where half of all pixels are nearer if that is less; and as far

@@ -35,7 +35,7 @@ absl::Status ValidateLamp(const Light& light) {
   if (light.kind == Light::Kind::kPoint) return absl::OkStatus();
   return absl::FailedPreconditionError(absl::StrFormat(
       "light \"%s\": a cube map is for point lights. The rays of a directional light are parallel: "
-      "it has cascades (StableCascades, SampleDistributionMaps)",
+      "cascades are for it",
       light.name));
 }
 

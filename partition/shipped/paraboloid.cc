@@ -88,7 +88,7 @@ absl::StatusOr<ParaboloidPair> MakeParaboloidPair(const Light& light,
   if (light.kind != Light::Kind::kPoint) {
     return absl::FailedPreconditionError(absl::StrFormat(
         "light \"%s\": paraboloids are for point lights. The rays of a directional light are "
-        "parallel: it has cascades (StableCascades, SampleDistributionMaps)",
+        "parallel: cascades are for it",
         light.name));
   }
   const double length = normal.stableNorm();

@@ -2,9 +2,8 @@
 //
 // What can be kept of the plan of the frame before, map by map.
 // In:   the maps as they were; one frame's LightView and ServedRays.
-// Out:  maps that hold all that must be held, at little cost: kept, moved by whole texels, or
-// fitted
-//       anew.   docs/mathematics.md 11, (23)
+// Out:  maps that hold all that must be held, at little cost: kept, moved by whole texels, or new.
+//       docs/mathematics.md 11, (23)
 //
 // Of all ways to hold what must be held the one is taken that costs least
 // (partition/tracking/frame_costs.h).

@@ -8,6 +8,7 @@
 
 #include "optimizer/evaluate.h"
 #include "optimizer/fit.h"
+#include "tests/calls/fine_floor.h"
 #include "tests/calls/requests.h"
 #include "tests/io/summary_examples.h"
 #include "tests/testing/plane_readback.h"
@@ -146,24 +147,15 @@ TEST(FitCall, RefusesWhatCannotBeAnswered) {
 
 // What lies outside of the pixels' shadow has room, as in the library.
 TEST(FitCall, TakesAFinerCover) {
-  testing::PlaneReadback floor = testing::FloorReadback();
-  floor.Cast(0, [](int x, int y) { return x > 12 && x < 25 && y > 8 && y < 20; });
-  testing::PlaneReadback fine =
-      testing::FloorReadback(testing::FloorCamera(3 * floor.camera.width, 3 * floor.camera.height));
-  fine.Cast(0, [](int x, int y) { return x > 30 && x < 95 && y > 21 && y < 60; });
-  FineCover cover;
-  cover.columns = fine.camera.width;
-  cover.rows = fine.camera.height;
-  cover.nearest = fine.depth;
-  cover.shadow_bits = fine.shadow_bits;
-  const std::vector<Light> lights = {Light::Point("lamp", {1.0, 2.0, 5.0}, 0)};
-  Readback readback = floor.View();
+  const testing::ShadowReachesFurther scene;
+  const std::vector<Light>& lights = scene.lights;
+  Readback readback = scene.floor.View();
   const absl::StatusOr<LightMatrix> without = FitLight(readback, lights[0], kMap, FitOptions());
-  readback.fine_cover = &cover;
+  readback.fine_cover = &scene.cover;
   const absl::StatusOr<LightMatrix> want = FitLight(readback, lights[0], kMap, FitOptions());
   ASSERT_THAT(want, testing::IsOk());
   v1::FitRequest request = WithMap(testing::RequestOf<v1::FitRequest>(readback, lights));
-  *request.mutable_readback()->mutable_fine_cover() = testing::FineCoverMessage(cover);
+  *request.mutable_readback()->mutable_fine_cover() = testing::FineCoverMessage(scene.cover);
   auto result = AnswerFit(request, CallContext());
   ASSERT_THAT(result, testing::IsOk());
   EXPECT_EQ(*MatrixFromProto(result->lights(0).map_from_world(), "m"), want->map_from_world);

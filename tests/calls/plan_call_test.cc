@@ -11,6 +11,7 @@
 #include "io/readback_exr.h"
 #include "optimizer/fit.h"
 #include "partition/fit_plan.h"
+#include "tests/calls/fine_floor.h"
 #include "tests/calls/requests.h"
 #include "tests/io/summary_examples.h"
 #include "tests/testing/plane_readback.h"
@@ -148,24 +149,15 @@ TEST(PlanCall, ALampIsNotToldOfMoreMapsThanTheServerTakes) {
 
 // What lies outside of the pixels' shadow has room, as in the library.
 TEST(PlanCall, TakesAFinerCover) {
-  testing::PlaneReadback floor = testing::FloorReadback();
-  floor.Cast(0, [](int x, int y) { return x > 12 && x < 25 && y > 8 && y < 20; });
-  testing::PlaneReadback fine =
-      testing::FloorReadback(testing::FloorCamera(3 * floor.camera.width, 3 * floor.camera.height));
-  fine.Cast(0, [](int x, int y) { return x > 30 && x < 95 && y > 21 && y < 60; });
-  FineCover cover;
-  cover.columns = fine.camera.width;
-  cover.rows = fine.camera.height;
-  cover.nearest = fine.depth;
-  cover.shadow_bits = fine.shadow_bits;
-  const std::vector<Light> lights = {Light::Point("lamp", {1.0, 2.0, 5.0}, 0)};
-  Readback readback = floor.View();
+  const testing::ShadowReachesFurther scene;
+  const std::vector<Light>& lights = scene.lights;
+  Readback readback = scene.floor.View();
   v1::FitRequest request = testing::RequestOf<v1::FitRequest>(readback, lights);
   request.mutable_plan_options()->set_max_maps(2);
   request.mutable_plan_options()->set_texels(4096);
   const v1::FitResult without = Answered(request);
-  readback.fine_cover = &cover;
-  *request.mutable_readback()->mutable_fine_cover() = testing::FineCoverMessage(cover);
+  readback.fine_cover = &scene.cover;
+  *request.mutable_readback()->mutable_fine_cover() = testing::FineCoverMessage(scene.cover);
   const v1::FitResult with = Answered(request);
   PlanOptions options;
   options.max_maps = 2;
