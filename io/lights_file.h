@@ -1,9 +1,8 @@
 // io/lights_file.h
 //
 // Lights from JSON files and from the command line.
-// In:   {"lights": [{"name": "key", "position": [x, y, z]}, {"name": "sun", "direction": [x, y,
-// z]}]},
-//       a lightfit.v1.LightList in protobuf JSON (unknown fields are ignored), or "sun=sun:0,0,-1".
+// In:   {"lights": [{"name": "key", "position": [x, y, z]}, ...]}, a lightfit.v1.LightList in
+//       protobuf JSON (unknown fields are ignored), or "sun=sun:0,0,-1".
 // Out:  lights, valid, with distinct names and shadow_bit 0, 1, ... in the order of the file.
 //
 // Positions are in world units; a direction is the one in which the light travels, of any length.
