@@ -11,8 +11,8 @@
 
 namespace lightfit {
 
-// Texel (0, 0) is the first in memory. `y_up` says whether clip y = +1 is the first row (Direct3D
-// and Metal textures) or y = -1 is (Vulkan, OpenGL).
+// Texel (0, 0) is the first in memory. `y_up` says whether clip y = +1 is the first row (Direct3D,
+// Metal, WebGPU) or y = -1 is (Vulkan, OpenGL).
 struct ClipConvention {
   enum class Depth { kZeroToOne, kMinusOneToOne, kReversedZeroToOne };
 
@@ -23,6 +23,8 @@ struct ClipConvention {
   static ClipConvention Direct3D() { return {Depth::kZeroToOne, true}; }
   static ClipConvention OpenGl() { return {Depth::kMinusOneToOne, false}; }
   static ClipConvention ReversedZ() { return {Depth::kReversedZeroToOne, false}; }
+  // Reversed z of Direct3D, Metal and WebGPU; ReversedZ() is Vulkan's.
+  static ClipConvention Direct3DReversed() { return {Depth::kReversedZeroToOne, true}; }
 };
 
 // Clip space from map space, both homogeneous. Column vectors; an engine with row vectors

@@ -88,7 +88,8 @@ absl::StatusOr<ClipConvention> ClipOf(const Value& value) {
   const Value* y_up = FindField(value.struct_value(), "y_up", "yUp");
   if (y_up == nullptr || y_up->kind_case() != Value::kBoolValue) {
     return absl::InvalidArgumentError(
-        "clip: want \"vulkan\", \"direct3d\", \"opengl\" or \"reversed_z\"");
+        "clip: want \"vulkan\", \"direct3d\", \"opengl\", \"reversed_z\" or "
+        "\"direct3d_reversed\"");
   }
   clip.y_up = y_up->bool_value();  // depth does not matter
   return clip;

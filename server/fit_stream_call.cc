@@ -3,12 +3,13 @@
 #include <utility>
 
 #include "calls/fit_call.h"
+#include "server/wire_message.h"
 
 namespace lightfit {
 
 FitStreamCall::FitStreamCall(ServerParts* parts,
                              grpc::CallbackServerContext* context,
-                             v1::FitResult* result)
+                             grpc::ByteBuffer* result)
     : call_(parts, "FitStream", context), result_(result) {
   if (absl::Status status = call_.EnterAsStream(nullptr); !status.ok()) {
     End(status);
@@ -17,7 +18,7 @@ FitStreamCall::FitStreamCall(ServerParts* parts,
   const ServerLimits& limits = call_.parts().limits;
   call_.parts().deadlines.Begin(
       this, limits.upload_timeout, [this, &limits] { End(LateUpload(limits)); });
-  StartRead(&part_);
+  StartRead(&bytes_);
 }
 
 void FitStreamCall::OnDone() {
@@ -27,25 +28,26 @@ void FitStreamCall::OnDone() {
 
 void FitStreamCall::OnReadDone(bool ok) {
   if (has_ended_) return;
-  const absl::Status status = ok ? Take(part_) : Submit();
+  const absl::Status status = ok ? Take() : Submit();
   if (!status.ok()) {
     End(status);
   } else if (ok) {
-    StartRead(&part_);
+    StartRead(&bytes_);
   }
 }
 
-absl::Status FitStreamCall::Take(const v1::FitStreamRequest& part) {
-  call_.NoteReceived(static_cast<int64_t>(part.ByteSizeLong()));
-  switch (part.part_case()) {
+absl::Status FitStreamCall::Take() {
+  call_.NoteReceived(static_cast<int64_t>(bytes_.Length()));
+  if (absl::Status status = ParseWire(&bytes_, &part_); !status.ok()) return status;
+  switch (part_.part_case()) {
     case v1::FitStreamRequest::kRequest:
       return Begin(part_.mutable_request());
     case v1::FitStreamRequest::kPixels:
       if (!pixels_.has_value()) {
         return absl::InvalidArgumentError("pixels: come before request, want request first");
       }
-      if (absl::Status status = CheckChunk(part.pixels()); !status.ok()) return status;
-      return pixels_->Append(part.pixels());
+      if (absl::Status status = CheckChunk(part_.pixels()); !status.ok()) return status;
+      return pixels_->Append(part_.pixels());
     case v1::FitStreamRequest::PART_NOT_SET:
       break;
   }
@@ -84,11 +86,11 @@ void FitStreamCall::Compute() {
   FineCover fine_cover;
   const Readback readback = pixels_->View(&fine_cover);
   const absl::Status fits = CheckBoundary(readback, context.limits);
-  absl::StatusOr<v1::FitResult> result = fits.ok() ? AnswerFit(request_, readback, context) : fits;
+  const absl::StatusOr<v1::FitResult> result =
+      fits.ok() ? AnswerFit(request_, readback, context) : fits;
   if (!result.ok()) return End(result.status());
   call_.NoteLights(result->lights());
-  *result_ = *std::move(result);
-  End(absl::OkStatus());
+  End(SerializeWire(*result, result_));
 }
 
 void FitStreamCall::End(const absl::Status& status) {

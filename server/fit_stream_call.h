@@ -8,6 +8,7 @@
 // when the one before has been stored, so that a fast sender waits in its own network layer.
 #pragma once
 
+#include <grpcpp/support/byte_buffer.h>
 #include <grpcpp/support/server_callback.h>
 
 #include <atomic>
@@ -20,16 +21,16 @@
 namespace lightfit {
 
 // Deletes itself when gRPC is done with it.
-class FitStreamCall final : public grpc::ServerReadReactor<v1::FitStreamRequest> {
+class FitStreamCall final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
  public:
-  FitStreamCall(ServerParts* parts, grpc::CallbackServerContext* context, v1::FitResult* result);
+  FitStreamCall(ServerParts* parts, grpc::CallbackServerContext* context, grpc::ByteBuffer* result);
 
   void OnReadDone(bool ok) override;
   void OnCancel() override { call_.Stop(); }
   void OnDone() override;
 
  private:
-  absl::Status Take(const v1::FitStreamRequest& part);
+  absl::Status Take();  // of what has been read
   absl::Status Begin(v1::FitRequest* request);
   absl::Status Submit();
   void Compute();
@@ -37,7 +38,8 @@ class FitStreamCall final : public grpc::ServerReadReactor<v1::FitStreamRequest>
   void End(const absl::Status& status);
 
   Call call_;
-  v1::FitResult* result_;
+  grpc::ByteBuffer* result_;
+  grpc::ByteBuffer bytes_;  // of part_
   v1::FitStreamRequest part_;
   v1::FitRequest request_;
   std::optional<PixelBuffer> pixels_;

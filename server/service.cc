@@ -11,39 +11,39 @@
 namespace lightfit {
 
 grpc::ServerUnaryReactor* LightFitService::Fit(grpc::CallbackServerContext* context,
-                                               const v1::FitRequest* request,
-                                               v1::FitResult* result) {
+                                               const grpc::ByteBuffer* request,
+                                               grpc::ByteBuffer* result) {
   return new UnaryCall<v1::FitRequest, v1::FitResult>(
       parts_, "Fit", context, request, result, &AnswerFit);
 }
 
-grpc::ServerReadReactor<v1::FitStreamRequest>* LightFitService::FitStream(
-    grpc::CallbackServerContext* context, v1::FitResult* result) {
+grpc::ServerReadReactor<grpc::ByteBuffer>* LightFitService::FitStream(
+    grpc::CallbackServerContext* context, grpc::ByteBuffer* result) {
   return new FitStreamCall(parts_, context, result);
 }
 
-grpc::ServerBidiReactor<v1::TrackRequest, v1::TrackResult>* LightFitService::Track(
+grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* LightFitService::Track(
     grpc::CallbackServerContext* context) {
   return new TrackCall(parts_, context);
 }
 
 grpc::ServerUnaryReactor* LightFitService::FitSummary(grpc::CallbackServerContext* context,
-                                                      const v1::FitSummaryRequest* request,
-                                                      v1::FitResult* result) {
+                                                      const grpc::ByteBuffer* request,
+                                                      grpc::ByteBuffer* result) {
   return new UnaryCall<v1::FitSummaryRequest, v1::FitResult>(
       parts_, "FitSummary", context, request, result, &AnswerFitSummary);
 }
 
 grpc::ServerUnaryReactor* LightFitService::Evaluate(grpc::CallbackServerContext* context,
-                                                    const v1::EvaluateRequest* request,
-                                                    v1::EvaluateResult* result) {
+                                                    const grpc::ByteBuffer* request,
+                                                    grpc::ByteBuffer* result) {
   return new UnaryCall<v1::EvaluateRequest, v1::EvaluateResult>(
       parts_, "Evaluate", context, request, result, &AnswerEvaluate);
 }
 
 grpc::ServerUnaryReactor* LightFitService::Allocate(grpc::CallbackServerContext* context,
-                                                    const v1::AllocateRequest* request,
-                                                    v1::Allocation* result) {
+                                                    const grpc::ByteBuffer* request,
+                                                    grpc::ByteBuffer* result) {
   return new UnaryCall<v1::AllocateRequest, v1::Allocation>(
       parts_, "Allocate", context, request, result, &AnswerAllocate);
 }

@@ -1,6 +1,6 @@
 // server/service.h
 //
-// lightfit.v1.LightFit: each method handed to its kind of call.
+// lightfit.v1.LightFit: each method handed to its kind of call, which parses its messages itself.
 // In:   calls, from gRPC's threads.
 // Out:  reactors, at once: nothing here blocks or computes.
 #pragma once
@@ -10,27 +10,33 @@
 
 namespace lightfit {
 
-class LightFitService final : public v1::LightFit::CallbackService {
+// All methods in bytes.
+using LightFitInBytes = v1::LightFit::WithRawCallbackMethod_Fit<
+    v1::LightFit::WithRawCallbackMethod_FitStream<v1::LightFit::WithRawCallbackMethod_Track<
+        v1::LightFit::WithRawCallbackMethod_FitSummary<v1::LightFit::WithRawCallbackMethod_Evaluate<
+            v1::LightFit::WithRawCallbackMethod_Allocate<v1::LightFit::Service>>>>>>;
+
+class LightFitService final : public LightFitInBytes {
  public:
   // `parts` outlive the server that this is registered with.
   explicit LightFitService(ServerParts* parts) : parts_(parts) {}
 
   grpc::ServerUnaryReactor* Fit(grpc::CallbackServerContext* context,
-                                const v1::FitRequest* request,
-                                v1::FitResult* result) override;
-  grpc::ServerReadReactor<v1::FitStreamRequest>* FitStream(grpc::CallbackServerContext* context,
-                                                           v1::FitResult* result) override;
-  grpc::ServerBidiReactor<v1::TrackRequest, v1::TrackResult>* Track(
+                                const grpc::ByteBuffer* request,
+                                grpc::ByteBuffer* result) override;
+  grpc::ServerReadReactor<grpc::ByteBuffer>* FitStream(grpc::CallbackServerContext* context,
+                                                       grpc::ByteBuffer* result) override;
+  grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* Track(
       grpc::CallbackServerContext* context) override;
   grpc::ServerUnaryReactor* FitSummary(grpc::CallbackServerContext* context,
-                                       const v1::FitSummaryRequest* request,
-                                       v1::FitResult* result) override;
+                                       const grpc::ByteBuffer* request,
+                                       grpc::ByteBuffer* result) override;
   grpc::ServerUnaryReactor* Evaluate(grpc::CallbackServerContext* context,
-                                     const v1::EvaluateRequest* request,
-                                     v1::EvaluateResult* result) override;
+                                     const grpc::ByteBuffer* request,
+                                     grpc::ByteBuffer* result) override;
   grpc::ServerUnaryReactor* Allocate(grpc::CallbackServerContext* context,
-                                     const v1::AllocateRequest* request,
-                                     v1::Allocation* result) override;
+                                     const grpc::ByteBuffer* request,
+                                     grpc::ByteBuffer* result) override;
 
  private:
   ServerParts* parts_;

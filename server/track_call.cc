@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "server/wire_message.h"
 
 namespace lightfit {
 namespace {
@@ -22,7 +23,7 @@ TrackCall::TrackCall(ServerParts* parts, grpc::CallbackServerContext* context)
     return;
   }
   WatchIdling();
-  StartRead(&request_);
+  StartRead(&request_bytes_);
 }
 
 void TrackCall::WatchIdling() {
@@ -41,8 +42,10 @@ void TrackCall::OnReadDone(bool ok) {
     End(pixels_.has_value() ? pixels_->CheckComplete() : absl::OkStatus());
     return;
   }
-  call_.NoteReceived(static_cast<int64_t>(request_.ByteSizeLong()));
-  if (absl::Status status = Take(&request_); !status.ok()) {
+  call_.NoteReceived(static_cast<int64_t>(request_bytes_.Length()));
+  absl::Status status = ParseWire(&request_bytes_, &request_);
+  if (status.ok()) status = Take(&request_);
+  if (!status.ok()) {
     End(status);
     return;
   }
@@ -135,8 +138,10 @@ void TrackCall::Answer() {
   call_.Release();
   is_frame_ready_ = false;
   call_.NoteLights(result_.result().lights());
+  const absl::Status status = SerializeWire(result_, &result_bytes_);
   call_.WorkDone();
-  StartWrite(&result_);
+  if (!status.ok()) return End(status);
+  StartWrite(&result_bytes_);
 }
 
 void TrackCall::OnWriteDone(bool ok) {
@@ -144,6 +149,7 @@ void TrackCall::OnWriteDone(bool ok) {
     const std::lock_guard lock(mutex_);
     is_working_ = false;
   }
+  result_bytes_.Clear();
   if (ok) {
     WatchIdling();
     GoOn();
@@ -157,7 +163,7 @@ void TrackCall::GoOn() {
     const std::lock_guard lock(mutex_);
     if (has_ended_) return;
     if (!is_draining_) {
-      StartRead(&request_);
+      StartRead(&request_bytes_);
       return;
     }
   }

@@ -6,6 +6,7 @@
 //       that sends faster than frames are fitted waits in its own network layer.
 #pragma once
 
+#include <grpcpp/support/byte_buffer.h>
 #include <grpcpp/support/server_callback.h>
 
 #include <mutex>
@@ -19,7 +20,7 @@
 namespace lightfit {
 
 // Deletes itself when gRPC is done with it.
-class TrackCall final : public grpc::ServerBidiReactor<v1::TrackRequest, v1::TrackResult> {
+class TrackCall final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer> {
  public:
   TrackCall(ServerParts* parts, grpc::CallbackServerContext* context);
 
@@ -41,6 +42,7 @@ class TrackCall final : public grpc::ServerBidiReactor<v1::TrackRequest, v1::Tra
   void End(const absl::Status& status);
 
   Call call_;
+  grpc::ByteBuffer request_bytes_, result_bytes_;
   v1::TrackRequest request_;
   std::optional<TrackSession> session_;
 

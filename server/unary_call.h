@@ -1,10 +1,11 @@
 // server/unary_call.h
 //
 // A call of one request and one result.
-// In:   the request, and the function of calls/ that answers it.
-// Out:  the result, computed on the pool.
+// In:   the request's bytes, and the function of calls/ that answers it.
+// Out:  the result's bytes, computed on the pool.
 #pragma once
 
+#include <grpcpp/support/byte_buffer.h>
 #include <grpcpp/support/server_callback.h>
 
 #include <utility>
@@ -12,6 +13,7 @@
 #include "absl/status/statusor.h"
 #include "calls/call_context.h"
 #include "server/call.h"
+#include "server/wire_message.h"
 
 namespace lightfit {
 
@@ -39,10 +41,13 @@ class UnaryCall final : public grpc::ServerUnaryReactor {
   UnaryCall(ServerParts* parts,
             const char* method,
             grpc::CallbackServerContext* context,
-            const Request* request,
-            Result* result,
+            const grpc::ByteBuffer* request,
+            grpc::ByteBuffer* result,
             Answer answer)
-      : call_(parts, method, context), request_(request), result_(result), answer_(answer) {
+      : call_(parts, method, context), result_(result), answer_(answer) {
+    // gRPC keeps the bytes, which are not const, until the call ends; nobody needs them once they
+    // are a message.
+    bytes_ = const_cast<grpc::ByteBuffer*>(request);
     if (const absl::Status status = Admit(); !status.ok()) Finish(call_.Finish(status));
   }
 
@@ -51,27 +56,31 @@ class UnaryCall final : public grpc::ServerUnaryReactor {
 
  private:
   absl::Status Admit() {
+    const auto num_bytes = static_cast<int64_t>(bytes_->Length());
+    const absl::Status parsed = ParseWire(bytes_, &request_);  // before it counts as a call
     if (absl::Status status = call_.Enter(); !status.ok()) return status;
-    const RequestSize size = SizeOf(*request_);
-    call_.NoteReceived(static_cast<int64_t>(request_->ByteSizeLong()));
+    call_.NoteReceived(num_bytes);
+    if (!parsed.ok()) return parsed;
+    const RequestSize size = SizeOf(request_);
     call_.NotePixels(size.pixels);
     if (absl::Status status = call_.Reserve(size.bytes); !status.ok()) return status;
     return call_.Run([this] { Compute(); });
   }
 
   void Compute() {
-    absl::StatusOr<Result> result = answer_(*request_, call_.context());
-    const absl::Status status = result.status();
+    const absl::StatusOr<Result> result = answer_(request_, call_.context());
+    absl::Status status = result.status();
     if (result.ok()) {
       NoteResult(*result, &call_);
-      *result_ = *std::move(result);
+      status = SerializeWire(*result, result_);
     }
     Finish(call_.Finish(status));  // may be the end of this object
   }
 
   Call call_;
-  const Request* request_;
-  Result* result_;
+  grpc::ByteBuffer* bytes_ = nullptr;  // of the request
+  Request request_;
+  grpc::ByteBuffer* result_;
   Answer answer_;
 };
 

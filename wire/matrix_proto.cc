@@ -1,6 +1,10 @@
 #include "wire/matrix_proto.h"
 
+#include <string>
+
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_replace.h"
 
 namespace lightfit {
 
@@ -14,7 +18,43 @@ struct NamedClip {
 const NamedClip kNamedClips[] = {{"vulkan", ClipConvention::Vulkan()},
                                  {"direct3d", ClipConvention::Direct3D()},
                                  {"opengl", ClipConvention::OpenGl()},
-                                 {"reversed_z", ClipConvention::ReversedZ()}};
+                                 {"reversed_z", ClipConvention::ReversedZ()},
+                                 {"direct3d_reversed", ClipConvention::Direct3DReversed()}};
+
+// What else people call them.
+struct ClipAlias {
+  const char* alias;
+  const char* name;
+};
+
+const ClipAlias kClipAliases[] = {{"vk", "vulkan"},
+                                  {"d3d", "direct3d"},
+                                  {"d3d11", "direct3d"},
+                                  {"d3d12", "direct3d"},
+                                  {"directx", "direct3d"},
+                                  {"dx", "direct3d"},
+                                  {"dx11", "direct3d"},
+                                  {"dx12", "direct3d"},
+                                  {"metal", "direct3d"},
+                                  {"webgpu", "direct3d"},
+                                  {"gl", "opengl"},
+                                  {"gles", "opengl"},
+                                  {"webgl", "opengl"},
+                                  {"vulkan_reversed", "reversed_z"},
+                                  {"d3d_reversed", "direct3d_reversed"},
+                                  {"directx_reversed", "direct3d_reversed"},
+                                  {"metal_reversed", "direct3d_reversed"},
+                                  {"webgpu_reversed", "direct3d_reversed"}};
+
+// In lower case, and with one sign between words.
+std::string Canonical(absl::string_view name) {
+  std::string canonical =
+      absl::StrReplaceAll(absl::AsciiStrToLower(name), {{"-", "_"}, {" ", "_"}});
+  for (const ClipAlias& alias : kClipAliases) {
+    if (canonical == alias.alias) return alias.name;
+  }
+  return canonical;
+}
 
 }  // namespace
 
@@ -94,11 +134,14 @@ const char* ClipConventionName(const ClipConvention& clip) {
 }
 
 absl::StatusOr<ClipConvention> ParseClipConvention(absl::string_view name) {
+  const std::string canonical = Canonical(name);
   for (const NamedClip& named : kNamedClips) {
-    if (name == named.name) return named.clip;
+    if (canonical == named.name) return named.clip;
   }
   return absl::InvalidArgumentError(absl::StrFormat(
-      "clip convention: \"%s\" is not known, want vulkan, direct3d, opengl or reversed_z", name));
+      "clip convention: \"%s\" is not known, want vulkan, direct3d (metal, webgpu), "
+      "opengl, reversed_z or direct3d_reversed",
+      name));
 }
 
 absl::StatusOr<Border> BorderFromProto(v1::Border proto, absl::string_view field) {

@@ -23,7 +23,8 @@ absl::StatusOr<ClipConvention> ClipConventionFromProto(const v1::ClipConvention&
                                                        absl::string_view field);
 v1::ClipConvention ClipConventionToProto(const ClipConvention& clip);
 
-// "vulkan", "direct3d", "opengl", "reversed_z", and back; "" for other combinations.
+// "vulkan", "direct3d", "opengl", "reversed_z", "direct3d_reversed", and back, there in any case,
+// with - for _, and by other names too ("metal", "d3d12"); "" for other combinations.
 const char* ClipConventionName(const ClipConvention& clip);
 absl::StatusOr<ClipConvention> ParseClipConvention(absl::string_view name);
 

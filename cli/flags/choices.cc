@@ -54,7 +54,8 @@ const Words<ClipConvention>& ClipWords() {
       *new Words<ClipConvention>{{"vulkan", ClipConvention::Vulkan()},
                                  {"direct3d", ClipConvention::Direct3D()},
                                  {"opengl", ClipConvention::OpenGl()},
-                                 {"reversed-z", ClipConvention::ReversedZ()}};
+                                 {"reversed-z", ClipConvention::ReversedZ()},
+                                 {"direct3d-reversed", ClipConvention::Direct3DReversed()}};
   return words;
 }
 

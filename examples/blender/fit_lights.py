@@ -104,7 +104,7 @@ def parse_flags() -> argparse.Namespace:
     )
     parser.add_argument(
         "--clip",
-        choices=("vulkan", "direct3d", "opengl", "reversed-z"),
+        choices=("vulkan", "direct3d", "opengl", "reversed-z", "direct3d-reversed"),
         default="vulkan",
         help="clip space of lightfit_clip_from_world [vulkan]",
     )

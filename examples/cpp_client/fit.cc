@@ -7,9 +7,11 @@
 
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <regex>
 #include <string>
 
 #include "lightfit/v1/service.grpc.pb.h"
@@ -21,6 +23,22 @@ constexpr size_t kChunkBytes = 1 << 20;
 std::string ReadFile(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+// gRPC sends every connection through a proxy of the environment, those to this machine too.
+bool IsThisMachine(const std::string& address) {
+  static const std::regex pattern(
+      R"((unix|unix-abstract):.*|((dns|ipv4|ipv6):/*)?(localhost|127\.[0-9.]+|\[::1\]):[0-9]+)",
+      std::regex::icase);
+  return std::regex_match(address, pattern);
+}
+
+// The variable that gRPC takes its proxy from; null: there is none.
+const char* ProxyVariable() {
+  for (const char* name : {"grpc_proxy", "https_proxy", "http_proxy"}) {
+    if (std::getenv(name) != nullptr) return name;  // NOLINT(concurrency-mt-unsafe): one thread
+  }
+  return nullptr;
 }
 
 }  // namespace
@@ -38,8 +56,11 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): out of 
     return 1;
   }
 
+  const bool is_direct = IsThisMachine(argv[1]);
+  grpc::ChannelArguments arguments;
+  if (is_direct) arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
   const std::unique_ptr<lightfit::v1::LightFit::Stub> stub = lightfit::v1::LightFit::NewStub(
-      grpc::CreateChannel(argv[1], grpc::InsecureChannelCredentials()));
+      grpc::CreateCustomChannel(argv[1], grpc::InsecureChannelCredentials(), arguments));
   grpc::ClientContext context;
   context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(60));
   lightfit::v1::FitResult result;
@@ -63,6 +84,9 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape): out of 
   const grpc::Status status = stream->Finish();
   if (!status.ok()) {
     std::fprintf(stderr, "%s: %s\n", argv[1], status.error_message().c_str());
+    if (const char* variable = ProxyVariable(); variable != nullptr && !is_direct) {
+      std::fprintf(stderr, "unless no_proxy names it, it was asked through %s\n", variable);
+    }
     return 1;
   }
 

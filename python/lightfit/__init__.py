@@ -31,6 +31,7 @@ from lightfit.errors import (
     TooLargeError,
     UnavailableError,
 )
+from lightfit._version import __version__
 from lightfit.calls import Calls
 from lightfit.cover import FineCover
 from lightfit.exr import ExrReadback, read_exr
@@ -107,6 +108,7 @@ __all__ = [
     "Track",
     "TrackerSettings",
     "UnavailableError",
+    "__version__",
     "allocate",
     "evaluate",
     "fit",

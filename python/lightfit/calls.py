@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Iterable, Mapping, Optional, Sequence
+from typing import Any, Iterable, Mapping, Optional, Sequence, Union
 
 from lightfit.cover import FineCover
 from lightfit.inputs import (
@@ -72,12 +72,14 @@ class Calls(PlanCalls):
         camera: `Camera.from_matrices(...)`, or a lightfit.v1 Camera message.
         lights: 1 to 32, `Light.sun(...)`, `Light.point(...)`, dicts such as {"name": "key",
             "position": [3, 1, 4]}, messages; or the path of a lights file. Names differ.
-        map_size: (width, height) of every light's map, texels.
+        map_size: (width, height) of every light's map, texels, or "1024x1024".
         options: every choice of a fit, None for the defaults: a dict such as {"search": "focused",
-            "margin_texels": 2}, or a lightfit.v1 FitOptions message. {"border": "lit"}, the
-            default, "dark" or "auto": what look-ups outside the map find, see LightResult.border.
-        clip: convention of LightResult.clip_from_world: "vulkan", "direct3d", "opengl",
-            "reversed_z".
+            "metric": "l1-edge", "margin_texels": 2}, with the words of the command line, or a
+            lightfit.v1 FitOptions message. {"border": "lit"}, the default, "dark" or "auto": what
+            look-ups outside the map find, see LightResult.border.
+        clip: convention of LightResult.clip_from_world: "vulkan", "direct3d" (also "metal",
+            "webgpu"), "opengl", "reversed-z" (Vulkan's), "direct3d-reversed" (also "metal-reversed",
+            "webgpu-reversed"); in any case.
         foretell_wrong: whether LightResult.foretold_wrong is wanted.
         facing: which surfaces face the light, by the sign of the renderer's cosine: as shadow, 1,
             True or 255 where they do; or one (height, width) plane per light, None where it is not
@@ -199,8 +201,8 @@ class Calls(PlanCalls):
         lights: Optional[Lights] = None,
         *,
         summaries: Optional[Sequence[Summary]] = None,
-        budget_texels: Optional[int] = None,
-        tolerance: Optional[Tolerance] = None,
+        budget_texels: Union[int, str, None] = None,
+        tolerance: Union[Tolerance, str, None] = None,
         weights: Optional[Mapping[str, float]] = None,
         rules: Optional[allocation_pb2.MapSizeRules] = None,
         plan: Optional[PlanOptions] = None,
@@ -215,8 +217,10 @@ class Calls(PlanCalls):
     ) -> Allocation:
         """Sizes of shadow maps, from a read-back (as for `fit`) or from summaries.
 
-        budget_texels: of all maps together, split so that the lights' energies are least; or
-        tolerance: the smallest maps that keep `Tolerance(limit_px, image_scale, kind)`.
+        budget_texels: of all maps together, a number or "4096x4096", split so that the lights'
+            energies are least; or
+        tolerance: the smallest maps that keep `Tolerance(limit_px, image_scale, kind)`, or the words
+            of `lightfit allocate --tolerance`, "p99:1.5".
         weights: by light, > 0, what its energy counts in a budget; 1 for those that are not named.
         rules: of the sides, a lightfit.v1 MapSizeRules message. None: multiples of 64 from 64 to
             16384.

@@ -13,10 +13,11 @@ import grpc
 
 from lightfit.errors import BusyError, InvalidArgumentError, LightfitError, error_of
 from lightfit.inputs import Path_
+from lightfit.proxy import Proxy, proxy_of
 
 SERVICE = "lightfit.v1.LightFit"
 
-_SCHEMES = ("unix:", "dns:", "ipv4:", "ipv6:")
+_SCHEMES = ("unix:", "unix-abstract:", "dns:", "ipv4:", "ipv6:")
 _ROUND_ROBIN = {
     "loadBalancingConfig": [{"round_robin": {}}],
     "healthCheckConfig": {"serviceName": SERVICE},
@@ -47,8 +48,31 @@ class TlsOptions:
         )
 
 
-def open_channel(address: str, tls: Optional[TlsOptions], round_robin: Optional[bool]) -> Any:
+@dataclasses.dataclass(frozen=True)
+class Peer:
+    """Who is asked, for messages."""
+
+    address: str
+    proxy: Optional[Proxy] = None  # that stands between
+
+    def about(self, code: Any, details: str) -> str:
+        """The details of a call that failed, with what helps to find out why."""
+        if code is grpc.StatusCode.UNAVAILABLE:
+            details = f"{self.address}: {details}"
+            if self.proxy is None and "failed to connect" in details:
+                details += "; is lightfit serve running there?"
+        elif code is grpc.StatusCode.DEADLINE_EXCEEDED:
+            details = f"{self.address}: no answer within timeout_s ({details})"
+        else:
+            return details
+        return details if self.proxy is None else f"{details}; {self.proxy.about()}"
+
+
+def open_channel(
+    address: str, tls: Optional[TlsOptions], round_robin: Optional[bool]
+) -> Tuple[Any, Peer]:
     target, is_many = target_of(address)
+    proxy = proxy_of(target)
     options: List[Tuple[str, Any]] = [
         ("grpc.max_receive_message_length", -1),
         ("grpc.max_send_message_length", -1),
@@ -56,14 +80,15 @@ def open_channel(address: str, tls: Optional[TlsOptions], round_robin: Optional[
         ("grpc.initial_reconnect_backoff_ms", 100),
         ("grpc.min_reconnect_backoff_ms", 1000),  # how long one attempt to connect may take
         ("grpc.max_reconnect_backoff_ms", 2000),
+        ("grpc.enable_http_proxy", 0 if proxy is None else 1),
     ]
     if is_many if round_robin is None else round_robin:
         options.append(("grpc.service_config", json.dumps(_ROUND_ROBIN)))
     if tls is None:
-        return grpc.insecure_channel(target, options)
+        return grpc.insecure_channel(target, options), Peer(address, proxy)
     if tls.server_name:
         options.append(("grpc.ssl_target_name_override", tls.server_name))
-    return grpc.secure_channel(target, tls.credentials(), options)
+    return grpc.secure_channel(target, tls.credentials(), options), Peer(address, proxy)
 
 
 def target_of(address: str) -> Tuple[str, bool]:
@@ -107,10 +132,14 @@ def pause(channel: Any, wait_s: float) -> None:
         channel.unsubscribe(ignore)
 
 
-def error_of_call(error: Any, request_id: Optional[str]) -> LightfitError:
-    """error: the grpc.RpcError of a call."""
+def error_of_call(
+    error: Any, request_id: Optional[str], peer: Optional[Peer] = None
+) -> LightfitError:
+    """error: the grpc.RpcError of a call. peer: who did not answer."""
     number, _ = error.code().value
     message = " ".join((error.details() or error.code().name).split())
+    if peer is not None:
+        message = peer.about(error.code(), message)
     pushback_s = _pushback_s(error)
     result = error_of(number, message, request_id)
     if error.code() is grpc.StatusCode.RESOURCE_EXHAUSTED and pushback_s is not None:

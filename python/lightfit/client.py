@@ -35,6 +35,9 @@ class Client(Calls):
     round_robin: whether to spread calls over all servers that say they serve; None: when there are
         many.
 
+    Proxies of the environment (http_proxy and the like) are for other machines: this one is asked
+    directly, and so are those that no_proxy names.
+
     Nothing is sent before the first call. The read-backs of EXR files are read here and need the
     compiled part; arrays do not.
     """
@@ -48,7 +51,7 @@ class Client(Calls):
         retries: int = RetryPolicy.retries,
         round_robin: Optional[bool] = None,
     ) -> None:
-        self._channel = open_channel(address, tls, round_robin)
+        self._channel, self._peer = open_channel(address, tls, round_robin)
         self._stub = service_pb2_grpc.LightFitStub(self._channel)  # type: ignore[no-untyped-call]
         self._timeout_s = timeout_s
         self._policy = RetryPolicy(retries)
@@ -63,7 +66,7 @@ class Client(Calls):
         except grpc.RpcError as error:
             if error.code() is grpc.StatusCode.NOT_FOUND:
                 return "SERVICE_UNKNOWN"
-            raise error_of_call(error, None) from None
+            raise error_of_call(error, None, self._peer) from None
         # One field of one byte, absent when 0.
         return _HEALTH[answer[1]] if len(answer) == 2 and answer[1] < len(_HEALTH) else _HEALTH[0]
 
@@ -118,6 +121,7 @@ class Client(Calls):
             self._timeout_s if timeout_s is None else timeout_s,
             self._pause,
             request_id,
+            self._peer,
         )
 
     def _run(
@@ -135,9 +139,9 @@ class Client(Calls):
             try:
                 return running.result()
             except grpc.RpcError as error:
-                raise error_of_call(error, request_id) from None
+                raise error_of_call(error, request_id, self._peer) from None
             except grpc.FutureCancelledError:
-                raise error_of_call(running, request_id) from None
+                raise error_of_call(running, request_id, self._peer) from None
             finally:
                 running.cancel()  # does nothing when it is done; stops the search on Ctrl-C
 

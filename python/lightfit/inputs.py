@@ -14,52 +14,41 @@ from numpy.typing import ArrayLike
 
 from lightfit.errors import InvalidArgumentError
 from lightfit.v1 import camera_pb2, light_pb2, matrix_pb2, options_pb2, result_pb2
+from lightfit.words import (
+    CLIP_ALIASES,
+    CLIPS,
+    DEPTH_KIND_ALIASES,
+    DEPTH_KINDS,
+    check_fields,
+    chosen,
+    enum_word,
+)
 
 MAX_LIGHTS = 32
 
-# Names as `lightfit fit --clip` has them: depth range, and whether y = +1 is the map's first row.
-_CLIPS: Dict[str, Tuple[int, bool]] = {
-    "vulkan": (matrix_pb2.ClipConvention.DEPTH_RANGE_ZERO_TO_ONE, False),
-    "direct3d": (matrix_pb2.ClipConvention.DEPTH_RANGE_ZERO_TO_ONE, True),
-    "opengl": (matrix_pb2.ClipConvention.DEPTH_RANGE_MINUS_ONE_TO_ONE, False),
-    "reversed_z": (matrix_pb2.ClipConvention.DEPTH_RANGE_REVERSED_ZERO_TO_ONE, False),
-}
-
-_DEPTH_KINDS: Dict[str, int] = {
-    "camera-z": camera_pb2.DEPTH_KIND_CAMERA_Z,
-    "distance": camera_pb2.DEPTH_KIND_DISTANCE,
-    "ndc-0-1": camera_pb2.DEPTH_KIND_NDC_ZERO_TO_ONE,
-    "ndc-minus-1-1": camera_pb2.DEPTH_KIND_NDC_MINUS_ONE_TO_ONE,
-    "ndc-reversed": camera_pb2.DEPTH_KIND_NDC_REVERSED_ZERO_TO_ONE,
-}
-
-# Words of the command line that are longer in the schema.
-_WORDS = {"auto": "automatic"}
-
 Clip = Union[str, matrix_pb2.ClipConvention]
-MapSize = Tuple[int, int]
+# (width, height), texels; or as the command line has it, "1024x1024".
+MapSize = Union[Tuple[int, int], str]
 Options = Union[options_pb2.FitOptions, Mapping[str, Any]]
 PlanOptions = Union[result_pb2.PlanOptions, Mapping[str, Any]]
 Path_ = Union[str, "os.PathLike[str]"]
 
 
 def clip_message(clip: Clip) -> matrix_pb2.ClipConvention:
-    """clip: "vulkan", "direct3d", "opengl", "reversed_z", or a message for any other."""
+    """clip: "vulkan", "direct3d" (also "metal", "webgpu"), "opengl", "reversed-z" (Vulkan's),
+    "direct3d-reversed" (also "metal-reversed", "webgpu-reversed"), or a message."""
     if isinstance(clip, matrix_pb2.ClipConvention):
         return clip
-    if clip not in _CLIPS:
-        raise InvalidArgumentError(f"clip = {clip!r}, want one of {', '.join(_CLIPS)}")
-    depth_range, y_up = _CLIPS[clip]
-    message = matrix_pb2.ClipConvention(y_up=y_up, name=clip)
+    name = chosen("clip", clip, CLIPS, CLIP_ALIASES)
+    depth_range, y_up = CLIPS[name]
+    message = matrix_pb2.ClipConvention(y_up=y_up, name=name.replace("-", "_"))
     message.depth_range = depth_range  # type: ignore[assignment]
     return message
 
 
 def depth_kind_number(kind: str) -> int:
     """kind: as `lightfit fit --depth-kind` has it."""
-    if kind not in _DEPTH_KINDS:
-        raise InvalidArgumentError(f"depth_kind = {kind!r}, want one of {', '.join(_DEPTH_KINDS)}")
-    return _DEPTH_KINDS[kind]
+    return DEPTH_KINDS[chosen("depth_kind", kind, DEPTH_KINDS, DEPTH_KIND_ALIASES)]
 
 
 def matrix_message(matrix: ArrayLike, field: str) -> matrix_pb2.Matrix4x4:
@@ -77,7 +66,9 @@ def matrix_message(matrix: ArrayLike, field: str) -> matrix_pb2.Matrix4x4:
 
 
 def map_size_message(size: MapSize, field: str = "map_size") -> result_pb2.MapSize:
-    """size: (width, height), texels."""
+    """size: (width, height), texels; or "1024x1024"."""
+    if isinstance(size, str):
+        size = _size_of_words(size, field)
     try:
         width, height = (_whole_number(side) for side in size)
     except (TypeError, ValueError):
@@ -89,11 +80,24 @@ def map_size_message(size: MapSize, field: str = "map_size") -> result_pb2.MapSi
     return result_pb2.MapSize(width=width, height=height)
 
 
+def number_of_texels(texels: Union[int, str], field: str) -> int:
+    """texels: a number, or a map that has so many, "4096x4096"."""
+    if isinstance(texels, str):
+        size = map_size_message(texels, field)
+        return size.width * size.height
+    try:
+        return _whole_number(texels)
+    except (TypeError, ValueError):
+        raise InvalidArgumentError(
+            f'{field} = {texels!r}, want a number of texels, such as 4 * 1024 * 1024 or "2048x2048"'
+        ) from None
+
+
 def options_message(options: Optional[Options]) -> Optional[options_pb2.FitOptions]:
     """options: a FitOptions message, or a dict of its fields.
 
-    Words of an enum may be written short, and as the command line has them: {"search": "focused"}
-    for "SEARCH_FOCUSED", {"border": "auto"} for "BORDER_CHOICE_AUTOMATIC".
+    Words of an enum may be written short, and as the command line has them, in any case: {"search":
+    "focused"} for "SEARCH_FOCUSED", {"metric": "l1-edge"} for "METRIC_L1_ACROSS_EDGE".
     """
     if options is None or isinstance(options, options_pb2.FitOptions):
         return options
@@ -101,14 +105,17 @@ def options_message(options: Optional[Options]) -> Optional[options_pb2.FitOptio
         raise InvalidArgumentError(
             f"options: is a {type(options).__name__}, want a dict or lightfit.FitOptions"
         )
-    fields = options_pb2.FitOptions.DESCRIPTOR.fields_by_name
+    check_fields("options", options, options_pb2.FitOptions.DESCRIPTOR)
+    fields = {
+        name: field
+        for field in options_pb2.FitOptions.DESCRIPTOR.fields
+        for name in (field.name, field.json_name)
+    }
     full: Dict[str, Any] = {}
     for name, value in options.items():
         field = fields.get(name)
         if field is not None and field.enum_type is not None and isinstance(value, str):
-            prefix = field.enum_type.values_by_number[0].name[: -len("UNSPECIFIED")]
-            word = prefix + _WORDS.get(value, value).upper().replace("-", "_")
-            value = word if word in field.enum_type.values_by_name else value
+            value = enum_word(field, value)
         full[name] = value
     message = options_pb2.FitOptions()
     try:
@@ -128,7 +135,10 @@ def plan_message(plan: Optional[PlanOptions]) -> result_pb2.PlanOptions:
             "lightfit.PlanOptions"
         )
     fields = dict(plan or {})
+    check_fields("plan", fields, result_pb2.PlanOptions.DESCRIPTOR)
     each = fields.pop("each", None)
+    if isinstance(fields.get("texels"), str):
+        fields["texels"] = number_of_texels(fields["texels"], "plan: texels")
     message = result_pb2.PlanOptions()
     try:
         json_format.ParseDict(fields, message)
@@ -161,10 +171,12 @@ class Camera:
 
         camera_from_world: the view matrix, (4, 4), column vectors, rigid.
         clip_from_camera: the projection matrix, (4, 4), perspective or orthographic.
-        clip: its convention: "vulkan", "direct3d", "opengl", "reversed_z".
+        clip: its convention, as for `fit`: "vulkan", "direct3d", "opengl", "reversed-z",
+            "direct3d-reversed". With OpenGL's depth in 0 ... 1 that of Direct3D.
         width, height: of the read-back, pixels; 0: as the depth's.
         depth_kind: what depth values are: "camera-z" (planar distance in front of the camera, world
-            units), "distance" (along the ray), "ndc-0-1", "ndc-minus-1-1", "ndc-reversed".
+            units), "distance" (along the ray), "ndc-0-1", "ndc-minus-1-1", "ndc-reversed"; in any
+            case, and "-" or "_" between.
         """
         camera = camera_pb2.Camera(
             width=width,
@@ -316,6 +328,13 @@ def _numbers(values: ArrayLike, field: str) -> "numpy.typing.NDArray[numpy.float
         return numpy.asarray(values, dtype=numpy.float64)
     except (TypeError, ValueError):
         raise InvalidArgumentError(f"{field} = {values!r}, want numbers") from None
+
+
+def _size_of_words(size: str, field: str) -> Tuple[int, int]:
+    words = size.strip().lower().split("x")
+    if len(words) == 2 and all(word.strip().isdecimal() for word in words):
+        return int(words[0]), int(words[1])
+    raise InvalidArgumentError(f'{field} = {size!r}, want WIDTHxHEIGHT such as "1024x1024"')
 
 
 def _whole_number(value: Any) -> int:

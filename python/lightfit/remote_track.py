@@ -8,7 +8,7 @@ from typing import Any, Callable, Iterator, Optional
 
 import grpc
 
-from lightfit.channel import error_of_call
+from lightfit.channel import Peer, error_of_call
 from lightfit.errors import CancelledError, DeadlineError, UnavailableError
 from lightfit.pixels import Pixels
 from lightfit.retry import RetryPolicy, call_with_retries
@@ -80,6 +80,7 @@ class RemoteTrack(Track):
         timeout_s: Optional[float],
         sleep: Callable[[float], None],
         request_id: str,
+        peer: Optional[Peer] = None,
     ) -> None:
         super().__init__()
         self._open_call = open_call
@@ -88,6 +89,7 @@ class RemoteTrack(Track):
         self._timeout_s = timeout_s
         self._sleep = sleep
         self._id = request_id
+        self._peer = peer
         self._stream: Optional[_Stream] = None
         self._is_closed = False
 
@@ -119,7 +121,7 @@ class RemoteTrack(Track):
             _send_frame(stream, frame, pixels)
             answer = stream.receive(timeout_s)
         except grpc.RpcError as error:
-            raise error_of_call(error, self._id) from None
+            raise error_of_call(error, self._id, self._peer) from None
         except TimeoutError:
             raise DeadlineError(
                 f"track: frame {frame.number} was not done within {self._timeout_s} s",

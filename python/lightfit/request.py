@@ -22,6 +22,7 @@ from lightfit.inputs import (
     light_messages,
     map_size_message,
     matrix_message,
+    number_of_texels,
     options_message,
 )
 from lightfit.pixels import Pixels, check_pixels
@@ -34,6 +35,7 @@ from lightfit.v1 import (
     shot_pb2,
     summary_pb2,
 )
+from lightfit.words import chosen
 
 # A summary: the path of a file of `lightfit summarize`, its bytes, or its message.
 Summary = Union[str, "os.PathLike[str]", bytes, summary_pb2.SummaryFile]
@@ -163,28 +165,41 @@ class Tolerance:
     limit_px: pixels of the final image per texel.
     image_scale: pixels of the final image per pixel of the read-back.
     kind: of the samples' footprints: "rms", "p99" or "worst".
+
+    Tolerance.parse("p99:1.5") takes the words of `lightfit allocate --tolerance`.
     """
 
     limit_px: float
     image_scale: float = 1.0
     kind: str = "p99"
 
+    @classmethod
+    def parse(cls, words: str, image_scale: float = 1.0) -> "Tolerance":
+        """words: "rms:PIXELS", "p99:PIXELS" or "worst:PIXELS"."""
+        kind, _, limit = words.partition(":")
+        try:
+            return cls(float(limit), image_scale, kind)
+        except ValueError:
+            raise InvalidArgumentError(
+                f'tolerance = {words!r}, want rms:PIXELS, p99:PIXELS or worst:PIXELS, such as '
+                '"p99:1.5"'
+            ) from None
+
     @property
     def message(self) -> allocation_pb2.Tolerance:
-        kinds = allocation_pb2.Tolerance.Kind
-        word = f"KIND_{self.kind}".upper()
-        if word not in kinds.keys() or self.kind == "unspecified":
-            raise InvalidArgumentError(f"tolerance: kind = {self.kind!r}, want rms, p99 or worst")
+        kind = chosen("tolerance: kind", self.kind, ("rms", "p99", "worst"), {})
         return allocation_pb2.Tolerance(
-            kind=kinds.Value(word), limit_px=self.limit_px, image_scale=self.image_scale
+            kind=allocation_pb2.Tolerance.Kind.Value(f"KIND_{kind.upper()}"),
+            limit_px=self.limit_px,
+            image_scale=self.image_scale,
         )
 
 
 def allocate_request(
     parts: Optional[ReadbackParts],
     summaries: Optional[Sequence[Summary]],
-    budget_texels: Optional[int],
-    tolerance: Optional[Tolerance],
+    budget_texels: Union[int, str, None],
+    tolerance: Union[Tolerance, str, None],
     weights: Optional[Mapping[str, float]],
     rules: Optional[allocation_pb2.MapSizeRules],
     plan: Optional[result_pb2.PlanOptions],
@@ -194,8 +209,10 @@ def allocate_request(
     if (budget_texels is None) == (tolerance is None):
         raise InvalidArgumentError(
             "allocate: want either budget_texels, such as 4 * 1024 * 1024, or tolerance, such as "
-            "lightfit.Tolerance(1.0)"
+            "lightfit.Tolerance(1.0) or \"p99:1.5\""
         )
+    if isinstance(tolerance, str):
+        tolerance = Tolerance.parse(tolerance)
     request = service_pb2.AllocateRequest(
         options=options_message(options),
         clip=clip_message(clip),
@@ -208,7 +225,7 @@ def allocate_request(
         ],
     )
     if budget_texels is not None:
-        request.budget_texels = int(budget_texels)
+        request.budget_texels = number_of_texels(budget_texels, "budget_texels")
     if parts is not None:
         request.readback.CopyFrom(parts.header)
         request.lights.extend(parts.lights)

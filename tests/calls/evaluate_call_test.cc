@@ -92,7 +92,8 @@ TEST(EvaluateCall, TakesMatricesInAnyClipSpace) {
   for (const ClipConvention& clip : {ClipConvention::Vulkan(),
                                      ClipConvention::Direct3D(),
                                      ClipConvention::OpenGl(),
-                                     ClipConvention::ReversedZ()}) {
+                                     ClipConvention::ReversedZ(),
+                                     ClipConvention::Direct3DReversed()}) {
     v1::EvaluateRequest clipped = request;
     for (v1::CandidateMatrix& candidate : *clipped.mutable_matrices()) {
       const Eigen::Matrix4d matrix = *MatrixFromProto(candidate.map_from_world(), "matrix");

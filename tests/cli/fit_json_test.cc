@@ -84,7 +84,8 @@ TEST(FitJson, ClipFromWorldFollowsTheChosenConvention) {
       {"vulkan", ClipConvention::Vulkan()},
       {"direct3d", ClipConvention::Direct3D()},
       {"opengl", ClipConvention::OpenGl()},
-      {"reversed-z", ClipConvention::ReversedZ()}};
+      {"reversed-z", ClipConvention::ReversedZ()},
+      {"direct3d-reversed", ClipConvention::Direct3DReversed()}};
   for (const auto& [word, convention] : conventions) {
     SCOPED_TRACE(word);
     const TemporaryFolder folder;

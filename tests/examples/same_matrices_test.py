@@ -12,7 +12,7 @@ import pytest
 from google.protobuf import json_format
 
 import lightfit
-from conftest import command_line, fit_result
+from conftest import command_line, fit_result, of_pixels
 from lightfit.v1 import result_pb2
 from serving import Server, program
 
@@ -32,14 +32,6 @@ def bits(result: result_pb2.FitResult) -> List[bytes]:
         for light in result.lights
         for matrix in (light.map_from_world, light.clip_from_world)
     ]
-
-
-def of_pixels(result: result_pb2.FitResult) -> result_pb2.FitResult:
-    """The same for clients that send pixels and know of no file that they came from."""
-    copy = result_pb2.FitResult()
-    copy.CopyFrom(result)
-    copy.readback.ClearField("origin")
-    return copy
 
 
 def test_the_program_writes_them(
@@ -89,6 +81,18 @@ def test_the_cpp_client_says_what_the_server_says(server: Server, files: pathlib
     done = command_line([cpp_client()])(server.address, files)
     assert done.returncode == 1 and done.stdout == ""
     assert "depth" in done.stderr
+
+
+@pytest.mark.parametrize("variable", ["grpc_proxy", "https_proxy", "http_proxy"])
+def test_proxies_are_for_other_machines(
+    server: Server, files: pathlib.Path, variable: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    client = command_line([cpp_client()])
+    monkeypatch.setenv(variable, "http://127.0.0.1:9")
+    assert client(server.address, files).returncode == 0
+    done = client("192.0.2.7:50071", files)
+    assert done.returncode == 1
+    assert "192.0.2.7:50071: " in done.stderr and f"through {variable}" in done.stderr
 
 
 def cpp_client() -> str:

@@ -43,11 +43,21 @@ TEST(ClipFromMap, ReversedDepthRunsFromOneToZero) {
               MatrixNear(Eigen::Vector3d(0.0, 0.0, 0.25), 1e-15));
 }
 
+TEST(ClipFromMap, ReversedDepthOfDirect3DHasTheFirstRowAtTheTop) {
+  EXPECT_THAT(Clip(ClipConvention::Direct3DReversed(), 0.0, 0.0, 0.0),
+              MatrixNear(Eigen::Vector3d(-1.0, 1.0, 1.0), 1e-15));
+  EXPECT_THAT(Clip(ClipConvention::Direct3DReversed(), 256.0, 512.0, 0.75),
+              MatrixNear(Eigen::Vector3d(-0.5, -1.0, 0.25), 1e-15));
+  EXPECT_THAT(Clip(ClipConvention::Direct3DReversed(), 1024.0, 512.0, 1.0),
+              MatrixNear(Eigen::Vector3d(1.0, -1.0, 0.0), 1e-15));
+}
+
 TEST(ClipFromMap, HoldsForHomogeneousPointsAndKeepsW) {
   const ClipConvention conventions[] = {ClipConvention::Vulkan(),
                                         ClipConvention::Direct3D(),
                                         ClipConvention::OpenGl(),
-                                        ClipConvention::ReversedZ()};
+                                        ClipConvention::ReversedZ(),
+                                        ClipConvention::Direct3DReversed()};
   for (const ClipConvention& clip : conventions) {
     EXPECT_THAT(Clip(clip, 100.0, 200.0, 0.3, 17.0),
                 MatrixNear(Clip(clip, 100.0, 200.0, 0.3), 1e-14));

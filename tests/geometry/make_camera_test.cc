@@ -42,6 +42,20 @@ const Engine kEngines[] = {
      false,
      1.0,
      0.0},
+    {"Direct3D reversed",
+     ClipConvention::Direct3DReversed(),
+     DepthKind::kNdcReversedZeroToOne,
+     1.0,
+     true,
+     1.0,
+     0.0},
+    {"Metal reversed -z",
+     ClipConvention::Direct3DReversed(),
+     DepthKind::kNdcReversedZeroToOne,
+     -1.0,
+     true,
+     1.0,
+     0.0},
 };
 
 // x, y scaled and moved off centre; the depth row solves ndc(near), ndc(far).

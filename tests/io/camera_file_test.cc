@@ -168,7 +168,7 @@ TEST(CameraFile, SceneErrorsNameTheFrameAndField) {
 }
 
 TEST(ClipConventionNames, ReadBack) {
-  for (const char* name : {"vulkan", "direct3d", "opengl", "reversed_z"}) {
+  for (const char* name : {"vulkan", "direct3d", "opengl", "reversed_z", "direct3d_reversed"}) {
     const auto clip = ParseClipConvention(name);
     ASSERT_TRUE(clip.ok()) << clip.status();
     EXPECT_STREQ(ClipConventionName(*clip), name);
@@ -177,8 +177,24 @@ TEST(ClipConventionNames, ReadBack) {
     EXPECT_EQ(copy->depth, clip->depth);
     EXPECT_EQ(copy->y_up, clip->y_up);
   }
-  EXPECT_STREQ(ClipConventionName({ClipConvention::Depth::kReversedZeroToOne, true}), "");
+  EXPECT_STREQ(ClipConventionName({ClipConvention::Depth::kMinusOneToOne, true}), "");
   EXPECT_TRUE(HasAll(ParseClipConvention("glide").status().message(), {"\"glide\"", "vulkan"}));
+}
+
+TEST(ClipConventionNames, AreReadAsPeopleWriteThem) {
+  const std::pair<const char*, const char*> cases[] = {{"D3D12", "direct3d"},
+                                                       {"Metal", "direct3d"},
+                                                       {"WebGPU", "direct3d"},
+                                                       {"OpenGL", "opengl"},
+                                                       {"reversed-z", "reversed_z"},
+                                                       {"vulkan-reversed", "reversed_z"},
+                                                       {"webgpu-reversed", "direct3d_reversed"},
+                                                       {"Direct3D Reversed", "direct3d_reversed"}};
+  for (const auto& [written, name] : cases) {
+    const auto clip = ParseClipConvention(written);
+    ASSERT_TRUE(clip.ok()) << clip.status();
+    EXPECT_STREQ(ClipConventionName(*clip), name) << written;
+  }
 }
 
 }  // namespace

@@ -78,6 +78,7 @@ TEST(GivenMaps, UndoesTheClipConvention) {
       {", \"clip\": \"vulkan\"", ClipConvention::Vulkan()},
       {", \"clip\": \"direct3d\"", ClipConvention::Direct3D()},
       {", \"clip\": \"opengl\"", ClipConvention::OpenGl()},
+      {", \"clip\": \"Metal-reversed\"", ClipConvention::Direct3DReversed()},
       {", \"clip\": {\"yUp\": true}", ClipConvention::Direct3D()}};
   for (const auto& [words, convention] : conventions) {
     SCOPED_TRACE(words);
@@ -259,7 +260,7 @@ TEST(GivenMaps, SaysWhatIsWrong) {
       {"{\"map_from_world\": {\"n\": []}}", "want 16 numbers"},
       {std::string("{\"map_from_world\": ") + kFlat + ", \"map\": {\"width\": 0}}", "map = 0x0"},
       {std::string("{\"map_from_world\": ") + kFlat + ", \"map\": 3}", "map = 0x0"},
-      {std::string("{\"clip_from_world\": ") + kFlat + ", \"clip\": \"metal\"}", "\"metal\""},
+      {std::string("{\"clip_from_world\": ") + kFlat + ", \"clip\": \"glide\"}", "\"glide\""},
       {std::string("{\"clip_from_world\": ") + kFlat + ", \"clip\": 7}", "clip: want"},
       {std::string("{\"map_from_world\": ") + kFlat + ", \"border\": \"grey\"}",
        "border = \"grey\", want \"lit\" or \"dark\""},

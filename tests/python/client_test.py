@@ -20,7 +20,7 @@ def arguments(yard: lightfit.ExrReadback) -> Any:
     return yard.depth, yard.shadow, yard.camera, yard.lights
 
 
-@pytest.mark.parametrize("clip", ["vulkan", "direct3d", "opengl", "reversed_z"])
+@pytest.mark.parametrize("clip", ["vulkan", "direct3d", "opengl", "reversed_z", "metal-reversed"])
 def test_a_fit_is_that_of_this_process(client: Any, arguments: Any, clip: str) -> None:
     want = lightfit.fit(*arguments, MAP, clip=clip, foretell_wrong=True, source="yard")
     result = client.fit(*arguments, MAP, clip=clip, foretell_wrong=True, source="yard")

@@ -12,9 +12,11 @@ from lightfit import Camera, Light
 from lightfit.inputs import (
     camera_message,
     clip_message,
+    depth_kind_number,
     light_messages,
     map_size_message,
     options_message,
+    plan_message,
 )
 from lightfit.v1 import camera_pb2, light_pb2, matrix_pb2, options_pb2
 
@@ -55,8 +57,13 @@ def test_matrices_that_are_none_are_refused(matrix: Any, words: str) -> None:
 
 
 def test_words_that_are_not_known_are_refused_with_those_that_are() -> None:
-    with refused("clip = 'metal', want one of vulkan, direct3d, opengl, reversed_z"):
-        clip_message("metal")
+    with refused(
+        "clip = 'reversed_y', want one of vulkan, direct3d, opengl, reversed-z, direct3d-reversed; "
+        'did you mean "reversed-z"'
+    ):
+        clip_message("reversed_y")
+    with refused("clip = 3, want one of vulkan"):
+        clip_message(3)  # type: ignore[arg-type]
     with refused("depth_kind = 'z', want one of camera-z, distance"):
         Camera.from_matrices(numpy.eye(4), PROJECTION, clip="opengl", depth_kind="z")
 
@@ -139,11 +146,77 @@ def test_options_may_be_short_words() -> None:
 
 
 @pytest.mark.parametrize(
+    "spelled, name",
+    [
+        ("reversed-z", "reversed_z"),
+        ("Reversed_Z", "reversed_z"),
+        ("direct3d-reversed", "direct3d_reversed"),
+        ("METAL", "direct3d"),
+        ("WebGPU-reversed", "direct3d_reversed"),
+        ("D3D12", "direct3d"),
+        ("OpenGL", "opengl"),
+        ("Vulkan", "vulkan"),
+    ],
+)
+def test_clip_spaces_are_read_as_people_write_them(spelled: str, name: str) -> None:
+    assert clip_message(spelled).name == name
+
+
+def test_depth_kinds_are_read_in_any_case() -> None:
+    for kind in ("camera-z", "Camera_Z"):
+        assert depth_kind_number(kind) == camera_pb2.DEPTH_KIND_CAMERA_Z
+    assert depth_kind_number("NDC-reversed") == camera_pb2.DEPTH_KIND_NDC_REVERSED_ZERO_TO_ONE
+
+
+# Every word of the command line: --metric, --search, --affine, --cover, --border.
+@pytest.mark.parametrize(
+    "field, word, number",
+    [
+        ("metric", "l2", options_pb2.METRIC_L2),
+        ("metric", "l2-edge", options_pb2.METRIC_L2_ACROSS_EDGE),
+        ("metric", "L1", options_pb2.METRIC_L1),
+        ("metric", "L1-Edge", options_pb2.METRIC_L1_ACROSS_EDGE),
+        ("metric", "l1_across_edge", options_pb2.METRIC_L1_ACROSS_EDGE),
+        ("metric", "METRIC_L1_ACROSS_EDGE", options_pb2.METRIC_L1_ACROSS_EDGE),
+        ("metric", options_pb2.METRIC_L1_ACROSS_EDGE, options_pb2.METRIC_L1_ACROSS_EDGE),
+        ("search", "focused", options_pb2.SEARCH_FOCUSED),
+        ("search", "line", options_pb2.SEARCH_ROTATION_LINE_SEARCH),
+        ("search", "refine", options_pb2.SEARCH_ROTATION_LINE_SEARCH_REFINED),
+        ("search", "Global", options_pb2.SEARCH_GLOBAL),
+        ("affine", "rectangle", options_pb2.AFFINE_MIN_AREA_RECTANGLE),
+        ("affine", "cgal-rectangle", options_pb2.AFFINE_MIN_AREA_RECTANGLE_CGAL),
+        ("affine", "skewed", options_pb2.AFFINE_SKEWED_RECTANGLE),
+        ("affine", "parallelogram", options_pb2.AFFINE_MIN_ENERGY_PARALLELOGRAM),
+        ("cover", "shadowed", options_pb2.COVER_SHADOWED),
+        ("cover", "receivers", options_pb2.COVER_RECEIVERS),
+        ("border", "lit", options_pb2.BORDER_CHOICE_LIT),
+        ("border", "dark", options_pb2.BORDER_CHOICE_DARK),
+        ("border", "AUTO", options_pb2.BORDER_CHOICE_AUTOMATIC),
+    ],
+)
+def test_options_take_the_words_of_the_command_line(field: str, word: Any, number: int) -> None:
+    message = options_message({field: word})
+    assert message is not None and getattr(message, field) == number
+
+
+def test_sizes_may_be_words() -> None:
+    assert map_size_message("1024X512") == map_size_message((1024, 512))
+    plan = plan_message({"max_maps": 2, "texels": "1024x1024"})
+    assert plan.texels == 1 << 20
+    assert plan_message({"each": "512x256"}).each == map_size_message((512, 256))
+    for wrong in ("1024", "1024x", "x", "1024 by 1024", "-1x3", "1.5x2"):
+        with refused(f"map_size = '{wrong}', want"):
+            map_size_message(wrong)
+
+
+@pytest.mark.parametrize(
     "options, words",
     [
-        ({"serch": "focused"}, 'options: .*"serch"'),
-        ({"search": "nowhere"}, "options: .*nowhere"),
-        ({"border": "red"}, "options: .*red"),
+        ({"serch": "focused"}, 'there is no "serch", want some of .*; did you mean "search"'),
+        ({"search": "nowhere"}, "search = 'nowhere', want one of focused, line, refine, global"),
+        ({"metric": "l1-edges"}, 'l1, l1-edge; did you mean "l1-edge"'),
+        ({"metric": "unspecified"}, "metric = 'unspecified', want one of l2, l2-edge"),
+        ({"border": "red"}, "border = 'red', want one of lit, dark, auto"),
         ({"margin_texels": "two"}, "options: .*two"),
         ("focused", "options: is a str, want a dict"),
     ],
@@ -155,5 +228,9 @@ def test_options_that_are_none_are_refused(options: Any, words: str) -> None:
 
 def test_tolerances_have_kinds() -> None:
     assert lightfit.Tolerance(1.5, 4).message.limit_px == 1.5
-    with refused("tolerance: kind = 'mean', want rms, p99 or worst"):
+    assert lightfit.Tolerance.parse("P99:1.5", 4).message == lightfit.Tolerance(1.5, 4).message
+    for words in ("p99", "p99:", "1.5", "p99:much"):
+        with refused(f"tolerance = '{words}', want rms:PIXELS"):
+            lightfit.Tolerance.parse(words)
+    with refused("tolerance: kind = 'mean', want one of rms, p99, worst"):
         lightfit.Tolerance(1.5, kind="mean").message

@@ -264,3 +264,7 @@ def test_the_package_needs_grpc_for_clients_only() -> None:
         capture_output=True, text=True,
     )
     assert done.returncode == 0, done.stderr
+
+
+def test_the_version_is_that_of_the_program(run_lightfit: Any) -> None:
+    assert lightfit.__version__ in run_lightfit("--version").stdout

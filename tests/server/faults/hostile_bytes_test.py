@@ -5,13 +5,13 @@ import re
 import socket
 import ssl
 import struct
-from typing import Any, List
+from typing import Any, Callable, Iterable, List
 
 import grpc
 import pytest
 
 from serving import Server, wait_until
-from workload import connect, is_well
+from workload import connect, is_well, small_readback, stream_requests, track_requests
 
 SEED = 20231
 
@@ -58,16 +58,23 @@ def bad_words() -> List[bytes]:
     ]
 
 
-def answers(method: Any, requests: List[bytes]) -> List[bytes]:
-    """Until the stream's end, whatever that is."""
-    stream = method(iter(requests), timeout=20)
-    found = []
-    try:
-        for answer in stream:
-            found.append(answer)
-    except grpc.RpcError:
-        assert stream.code() is not grpc.StatusCode.DEADLINE_EXCEEDED
-    return found
+UNARY = ("Fit", "FitSummary", "Evaluate", "Allocate")
+
+# Field 1 is said to have 100 bytes, and has three.
+CUT_SHORT = b"\x0a\x64abc"
+
+
+def refusal_of(call: Callable[[], Any]) -> str:
+    """That the call is refused for what was sent, and the words."""
+    with pytest.raises(grpc.RpcError) as caught:
+        call()
+    assert caught.value.code() is grpc.StatusCode.INVALID_ARGUMENT, caught.value
+    return str(caught.value.details())
+
+
+def track_of(channel: Any, requests: Iterable[bytes], answers: List[bytes]) -> None:
+    for answer in channel.stream_stream("/lightfit.v1.LightFit/Track")(iter(requests), timeout=20):
+        answers.append(answer)
 
 
 def is_alive(server: Server) -> bool:
@@ -120,21 +127,40 @@ def test_messages_of_noise_are_refused(start: Any) -> None:
     with connect(server.address) as channel:
         for number in range(200):
             noise = source.randbytes(source.choice((1, 10, 100, 10000)))
-            method = ("Fit", "FitSummary", "Evaluate", "Allocate")[number % 4]
-            call = channel.unary_unary(f"/lightfit.v1.LightFit/{method}")
-            with pytest.raises(grpc.RpcError):
-                call(noise, timeout=20)
+            unary = channel.unary_unary(f"/lightfit.v1.LightFit/{UNARY[number % len(UNARY)]}")
+            refusal_of(lambda: unary(noise, timeout=20))
             pieces = [source.randbytes(source.choice((1, 10, 10000))) for _ in range(3)]
-            call = channel.stream_unary("/lightfit.v1.LightFit/FitStream")
-            with pytest.raises(grpc.RpcError):
-                call(iter(pieces), timeout=20)
-            # gRPC does not tell the server such a message from the stream's end, which is no error.
-            assert answers(channel.stream_stream("/lightfit.v1.LightFit/Track"), pieces) == []
+            stream = channel.stream_unary("/lightfit.v1.LightFit/FitStream")
+            refusal_of(lambda: stream(iter(pieces), timeout=20))
+            refusal_of(lambda: track_of(channel, pieces, []))
         with pytest.raises(grpc.RpcError) as caught:
             channel.unary_unary("/lightfit.v1.LightFit/NoSuchMethod")(b"", timeout=20)
         assert caught.value.code() is grpc.StatusCode.UNIMPLEMENTED
     server.wait_until_idle()
     assert is_alive(server)
+
+
+def test_a_message_that_cannot_be_parsed_is_an_error_wherever_it_comes(start: Any) -> None:
+    server = start()
+    track = [message.SerializeToString() for message in track_requests([small_readback()] * 2)]
+    upload = [message.SerializeToString() for message in stream_requests(small_readback())]
+    with connect(server.address) as channel:
+        for end in range(len(track) + 1):
+            answers: List[bytes] = []
+            words = refusal_of(lambda: track_of(channel, [*track[:end], CUT_SHORT], answers))
+            assert "message cannot be parsed, want lightfit.v1.TrackRequest" in words
+            assert len(answers) == max(0, end - 1) // (len(track) // 2)  # the frames before it
+        stream = channel.stream_unary("/lightfit.v1.LightFit/FitStream")
+        for end in range(len(upload)):
+            words = refusal_of(lambda: stream(iter([*upload[:end], CUT_SHORT]), timeout=20))
+            assert "message cannot be parsed, want lightfit.v1.FitStreamRequest" in words
+        for method in UNARY:
+            unary = channel.unary_unary(f"/lightfit.v1.LightFit/{method}")
+            words = refusal_of(lambda: unary(CUT_SHORT, timeout=20))
+            assert f"message cannot be parsed, want lightfit.v1.{method}Request" in words
+        track_of(channel, track, answers := [])
+        assert len(answers) == 2  # as ever
+    server.wait_until_idle()
 
 
 def test_request_ids_cannot_forge_lines_of_the_log(start: Any) -> None:

@@ -35,7 +35,9 @@ LONG = {
 
 def connect(address: str) -> Any:
     """A channel with a connection of its own."""
-    return grpc.insecure_channel(address, [("grpc.use_local_subchannel_pool", 1)])
+    return grpc.insecure_channel(
+        address, [("grpc.use_local_subchannel_pool", 1), ("grpc.enable_http_proxy", 0)]
+    )
 
 
 def stub_of(channel: Any) -> Any:
