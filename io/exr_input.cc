@@ -9,6 +9,7 @@
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStdIO.h>
+#include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfTestFile.h>
 #include <OpenEXR/ImfTileDescription.h>
 #include <OpenEXR/ImfTiledInputPart.h>
@@ -232,6 +233,13 @@ std::string ExrInput::quoted_part(int part) const {
 
 double ExrInput::pixel_aspect(int part) const {
   return source_->file->header(part).pixelAspectRatio();
+}
+
+std::optional<std::string> ExrInput::StringAttribute(int part, const std::string& name) const {
+  const Imf::Header& header = source_->file->header(part);
+  const auto* found = header.findTypedAttribute<Imf::StringAttribute>(name);
+  if (found == nullptr) return std::nullopt;
+  return found->value();
 }
 
 std::optional<Eigen::Matrix4d> ExrInput::MatrixAttribute(int part, const std::string& name) const {

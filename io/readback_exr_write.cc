@@ -7,6 +7,7 @@
 #include <OpenEXR/ImfMatrixAttribute.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStdIO.h>
+#include <OpenEXR/ImfStringAttribute.h>
 
 #include <Eigen/Core>
 #include <cmath>
@@ -21,6 +22,7 @@
 #include "base/text_file.h"
 #include "io/camera_exr_input.h"
 #include "io/exr_threads.h"
+#include "io/header_lights.h"
 #include "wire/utf8.h"
 
 namespace lightfit {
@@ -118,7 +120,9 @@ std::vector<BitChannel> BitChannelsOf(const Readback& readback, absl::Span<const
   return channels;
 }
 
-Imf::Header HeaderOf(const Readback& readback, const std::vector<BitChannel>& channels) {
+Imf::Header HeaderOf(const Readback& readback,
+                     absl::Span<const Light> lights,
+                     const std::vector<BitChannel>& channels) {
   const StandardMatrices matrices = StandardMatricesOf(readback.camera);
   Imf::Header header(
       readback.width(), readback.height(), static_cast<float>(matrices.pixel_aspect));
@@ -129,6 +133,10 @@ Imf::Header HeaderOf(const Readback& readback, const std::vector<BitChannel>& ch
   }
   AddMatrix("worldToCamera", matrices.camera_from_world, &header);
   AddMatrix("worldToNDC", matrices.ndc_from_world, &header);
+  // Names that are not UTF-8 can stand in no JSON: such a file says nothing of its lights.
+  if (const absl::StatusOr<std::string> json = LightsForHeader(lights); json.ok()) {
+    header.insert(std::string(kLightsAttribute), Imf::StringAttribute(*json));
+  }
   return header;
 }
 
@@ -145,7 +153,7 @@ std::vector<half> ValuesOf(const BitChannel& channel) {
 // go unnoticed.
 std::string BytesOf(const Readback& readback, absl::Span<const Light> lights) {
   const std::vector<BitChannel> channels = BitChannelsOf(readback, lights);
-  const Imf::Header header = HeaderOf(readback, channels);
+  const Imf::Header header = HeaderOf(readback, lights, channels);
   const auto slice = [&header](Imf::PixelType type, const void* pixels) {
     return Imf::Slice::Make(type, pixels, header.dataWindow());
   };

@@ -12,6 +12,7 @@
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfStringAttribute.h>
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -34,6 +35,7 @@ struct ExrPart {
   int data_x = 0, data_y = 0, data_width = 8, data_height = 6;  // data window
   std::vector<Channel> channels;
   std::vector<std::pair<std::string, Eigen::Matrix4d>> matrices;  // rows as stored
+  std::vector<std::pair<std::string, std::string>> strings;       // attributes
   float pixel_aspect = 1.0F;
   std::string name = "part";
   std::string view;                     // of a stereo file; empty: the part does not say
@@ -59,6 +61,7 @@ inline Imf::Header HeaderOf(const ExrPart& part) {
     for (int i = 0; i < 16; ++i) rows[i / 4][i % 4] = static_cast<float>(matrix(i / 4, i % 4));
     header.insert(name, Imf::M44fAttribute(rows));
   }
+  for (const auto& [name, text] : part.strings) header.insert(name, Imf::StringAttribute(text));
   return header;
 }
 
