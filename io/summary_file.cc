@@ -107,7 +107,7 @@ absl::Status WriteSummaryFile(const std::string& path,
 }
 
 absl::StatusOr<SummarySet> ReadSummaryFile(const std::string& path) {
-  const absl::StatusOr<std::string> bytes = ReadTextFile(path, kMaxFileBytes);
+  const absl::StatusOr<std::string> bytes = ReadFileBytes(path, kMaxFileBytes);
   if (!bytes.ok()) return bytes.status();
   absl::StatusOr<SummarySet> set = ParseSummarySet(*bytes);
   if (!set.ok()) return InFile(path, set.status());
