@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "base/number.h"
+#include "base/table.h"
 #include "jobs/compare/totals.h"
 #include "jobs/schemes/asked_maps.h"
 #include "picture/bar_chart.h"
@@ -33,6 +34,9 @@ constexpr int kFrameWidth = 2;
 constexpr int kTitleSize = 26;
 constexpr int kNameSize = 19;
 constexpr int kCaptionSize = 15;
+
+constexpr int kMostTitleCharacters = 40;
+constexpr int kMostNameCharacters = 24;
 
 constexpr int kMaxColumns = 4;
 constexpr int kCropPixels = 62;  // about the crop's width in image pixels
@@ -94,7 +98,9 @@ class Page {
   void DrawTitle() {
     Text(kMargin,
          kMargin + 18,
-         absl::StrCat(options_.title, ", ", light_.light.name),
+         absl::StrCat(Shortened(options_.title, kMostTitleCharacters),
+                      ", ",
+                      Shortened(light_.light.name, kMostTitleCharacters)),
          {.size_px = kTitleSize, .color = kTextColor, .bold = true});
     const Camera& camera = stage_.screen.camera;
     Text(
@@ -138,7 +144,7 @@ class Page {
                   static_cast<double>(CountOf(light_.lightfit(), options_.bias)));
       if (ratio.has_value()) absl::StrAppend(&caption, ", ", FigureText(*ratio), " x lightfit");
     }
-    std::string title = row.name;
+    std::string title = Shortened(row.name, kMostNameCharacters);
     if (row.drawn.has_other_texels) {
       absl::StrAppend(&title, " (", NumTexels(row.drawn), " texels)");
     }
@@ -156,7 +162,8 @@ class Page {
     for (const ComparedRow* map : maps) {
       if (!HasImage(*map)) continue;
       const Rgb color = map == &light_.lightfit() ? kGainColor : kReceiverColor;
-      bars.push_back({map->name, CountOf(*map, options_.bias), color});
+      bars.push_back(
+          {Shortened(map->name, kMostNameCharacters), CountOf(*map, options_.bias), color});
     }
     if (bars.empty()) return;
     Header("all methods", "wrong pixels; fewer is better", kTextColor);

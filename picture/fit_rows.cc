@@ -6,6 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "base/number.h"
+#include "base/table.h"
 #include "picture/color_map.h"
 #include "picture/theme.h"
 
@@ -30,6 +31,8 @@ constexpr int kTitleSize = 26;
 constexpr int kLightNameSize = 21;
 constexpr int kPanelTitleSize = 16;
 constexpr int kCaptionSize = 14;
+
+constexpr int kMostNameCharacters = 40;
 
 constexpr int kMostMapsInLegend = 8;  // of a plan; the others have their numbers in the picture
 
@@ -263,9 +266,12 @@ void FitRows::Text(int x, int baseline, absl::string_view text, const TextStyle&
 void FitRows::HeaderLine(const std::string& name, const std::string& words, Rgb color) {
   canvas_.FillRectangle(kMargin, y_, layout_.width - 2 * kMargin, 1, kRuleColor);
   const TextStyle style = {.size_px = kLightNameSize, .color = kTextColor, .bold = true};
-  Text(kMargin, y_ + 30, name, style);
-  Text(
-      kMargin + typeface_.Width(name, style) + 22, y_ + 30, words, {.size_px = 18, .color = color});
+  const std::string shown = Shortened(name, kMostNameCharacters);
+  Text(kMargin, y_ + 30, shown, style);
+  Text(kMargin + typeface_.Width(shown, style) + 22,
+       y_ + 30,
+       words,
+       {.size_px = 18, .color = color});
   y_ += kRowHeaderHeight;
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <vector>
 
-#include "picture/exposure.h"
 #include "picture/theme.h"
 
 namespace lightfit {

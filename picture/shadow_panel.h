@@ -10,7 +10,6 @@
 
 #include "absl/types/span.h"
 #include "geometry/light.h"
-#include "picture/exposure.h"
 #include "picture/image.h"
 #include "render/surface_image.h"
 #include "render/true_lighting.h"

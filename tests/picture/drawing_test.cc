@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "picture/color_map.h"
-#include "picture/exposure.h"
 #include "picture/image.h"
 #include "picture/map_panel.h"
 #include "picture/text.h"
