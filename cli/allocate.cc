@@ -14,6 +14,7 @@
 #include "cli/allocate_inputs.h"
 #include "cli/exit_code.h"
 #include "cli/reports/allocate_report.h"
+#include "cli/reports/legend.h"
 #include "cli/summary_inputs.h"
 #include "geometry/map_size.h"
 #include "jobs/allocate_lights.h"
@@ -75,14 +76,15 @@ int PrintFailedLights(const AllocationReport& report) {
       ++num_failed;
     } else if (reached.has_value() && !reached->is_met) {
       PrintError(
-          absl::StrFormat("%s: %s pixels at the largest map, %d x %d; want %s: raise "
-                          "--max-side (%d) or the tolerance",
+          absl::StrFormat("%s: %s pixels at the largest map, %d x %d; want %s: raise --max-side "
+                          "(%d), or --tolerance %s can be kept",
                           name,
                           FigureText(reached->reached_px),
                           fit.matrix->map.width,
                           fit.matrix->map.height,
                           ToleranceText(*report.tolerance),
-                          report.rules.max_side));
+                          report.rules.max_side,
+                          ToleranceThatHolds(*report.tolerance, reached->reached_px)));
       ++num_failed;
     }
   }
@@ -104,6 +106,7 @@ void PrintMissingFrames(const AllocationReport& report, const SummarySet& summar
 std::function<int()> DeclareAllocate(CLI::App* app) {
   const auto flags = std::make_shared<AllocateFlags>();
   DeclareAllocateFlags(app, flags.get());
+  app->footer(app->get_footer() + LegendHelp(AllocationLegend()));
   return [flags] { return RunAllocate(*flags); };
 }
 
@@ -127,7 +130,8 @@ int RunAllocate(const AllocateFlags& flags) {
   if (!report.ok()) return Fail(kExitBadInput, report.status());
   if (!flags.fit.quiet) {
     const std::string source = SourceLine(flags, *inputs);
-    std::fputs(AllocationText(*report, source, inputs->image_scale).c_str(), stdout);
+    const std::string text = AllocationText(*report, source, inputs->image_scale, flags.fit.legend);
+    std::fputs(text.c_str(), stdout);
     std::fflush(stdout);
   }
   const int num_failed = PrintFailedLights(*report);

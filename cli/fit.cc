@@ -12,12 +12,17 @@
 #include "absl/strings/str_format.h"
 #include "base/output_file.h"
 #include "base/progress.h"
+#include "base/text_file.h"
 #include "cli/exit_code.h"
 #include "cli/fit_summary.h"
 #include "cli/flags/fit_inputs.h"
+#include "cli/reports/fit_csv.h"
 #include "cli/reports/fit_report.h"
+#include "cli/reports/legend.h"
 #include "cli/reports/plan_report.h"
+#include "io/image_exr_write.h"
 #include "jobs/fit_comparison.h"
+#include "jobs/fit_images.h"
 #include "picture/fit_page.h"
 #include "picture/png.h"
 #include "picture/text.h"
@@ -27,8 +32,10 @@ namespace lightfit::cli {
 namespace {
 
 absl::Status CheckOutputs(const FitFlags& flags) {
-  for (const auto& [flag, path] :
-       {std::pair{"--json", flags.json_path}, std::pair{"--picture", flags.picture_path}}) {
+  for (const auto& [flag, path] : {std::pair{"--json", flags.json_path},
+                                   std::pair{"--csv", flags.csv_path},
+                                   std::pair{"--picture", flags.picture_path},
+                                   std::pair{"--footprint", flags.footprint_path}}) {
     if (path.empty()) continue;
     absl::Status status = CheckWritable(flag, path);
     if (!status.ok()) return status;
@@ -172,13 +179,27 @@ Outcome FitAndDraw(const FitFlags& flags, const FitOptions& options, const FitIn
 
 absl::Status WriteOutputs(const FitFlags& flags,
                           const FitOptions& options,
-                          const ReadbackFile& file,
+                          const FitInputs& inputs,
                           const Outcome& outcome) {
+  const ReadbackFile& file = inputs.file;
   if (!flags.json_path.empty()) {
     const FitReport report = JsonReport(flags, options, file, outcome.comparisons);
     v1::FitResult result = FitResultToProto(report);
     *result.mutable_readback()->mutable_origin() = OriginToProto(file.origin);
     absl::Status status = WriteFitResultJson(flags.json_path, result);
+    if (!status.ok()) return status;
+  }
+  if (!flags.csv_path.empty()) {
+    const std::string csv = FitCsv(inputs.View(), flags.map, options, outcome.comparisons);
+    absl::Status status = WriteTextFileAtomically(flags.csv_path, csv);
+    if (!status.ok()) return status;
+  }
+  if (!flags.footprint_path.empty()) {
+    const Readback readback = inputs.View();
+    const absl::StatusOr<std::vector<ExrImage>> images =
+        FitImages(readback, outcome.comparisons, options);
+    if (!images.ok()) return images.status();
+    absl::Status status = WriteImageExr(flags.footprint_path, readback.camera, *images);
     if (!status.ok()) return status;
   }
   if (flags.picture_path.empty()) return absl::OkStatus();
@@ -191,6 +212,7 @@ absl::Status WriteOutputs(const FitFlags& flags,
 std::function<int()> DeclareFit(CLI::App* app) {
   const auto flags = std::make_shared<FitFlags>();
   DeclareFitFlags(app, flags.get());
+  app->footer(app->get_footer() + LegendHelp(FitLegend() + "With --maps:\n" + PlanLegend()));
   return [flags] { return flags->summary_paths.empty() ? RunFit(*flags) : RunFitSummary(*flags); };
 }
 
@@ -210,15 +232,17 @@ int RunFit(const FitFlags& flags) {
     const Readback readback = inputs->View();
     const std::string source = SourceText(flags, inputs->file);
     const std::string text =
-        plan.has_value() ? PlanReportText(source, readback, *plan, outcome.comparisons)
-                         : FitReportText(source, readback, flags.map, options, outcome.comparisons);
+        plan.has_value()
+            ? PlanReportText(source, readback, *plan, outcome.comparisons, flags.legend)
+            : FitReportText(
+                  source, readback, flags.map, options, outcome.comparisons, flags.legend);
     std::fputs(text.c_str(), stdout);
     std::fflush(stdout);
   }
   WarnAboutPixels(outcome.comparisons);
   PrintNotes(outcome.comparisons, options);
   const int num_failed = PrintFailedLights(outcome.comparisons, plan.has_value());
-  status = WriteOutputs(flags, options, inputs->file, outcome);
+  status = WriteOutputs(flags, options, *inputs, outcome);
   if (!status.ok()) return Fail(kExitBadInput, status);
   return num_failed > 0 ? kExitIncomplete : kExitOk;
 }

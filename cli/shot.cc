@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "cli/exit_code.h"
+#include "cli/reports/legend.h"
 #include "cli/reports/shot_report.h"
 #include "jobs/shot/run.h"
 #include "picture/png.h"
@@ -46,6 +47,7 @@ Typeface FindTypeface() {
 std::function<int()> DeclareShot(CLI::App* app) {
   const auto flags = std::make_shared<ShotFlags>();
   DeclareShotFlags(app, flags.get());
+  app->footer(app->get_footer() + LegendHelp(ShotLegend()));
   return [flags] { return RunShotVerb(*flags); };
 }
 
@@ -68,7 +70,7 @@ int RunShotVerb(const ShotFlags& flags) {
   }
   if (!status.ok()) return Fail(kExitBadInput, status);
   if (!job->quiet) {
-    std::fputs(ShotReportText(context).c_str(), stdout);
+    std::fputs(ShotReportText(context, flags.fit.legend).c_str(), stdout);
     std::fflush(stdout);
   }
   for (const std::string& note : context.notes) PrintWarning(note);

@@ -13,6 +13,7 @@
 #include "cli/compare_inputs.h"
 #include "cli/exit_code.h"
 #include "cli/reports/fit_report.h"
+#include "cli/reports/legend.h"
 #include "cli/reports/tune_report.h"
 #include "jobs/tune/journal.h"
 #include "jobs/tune/json.h"
@@ -103,6 +104,7 @@ int PrintFailedLights(const std::vector<TunedLight>& lights) {
 std::function<int()> DeclareTune(CLI::App* app) {
   const auto flags = std::make_shared<TuneFlags>();
   DeclareTuneFlags(app, flags.get());
+  app->footer(app->get_footer() + LegendHelp(TuneLegend()));
   return [flags] { return RunTune(*flags); };
 }
 
@@ -129,7 +131,8 @@ int RunTune(const TuneFlags& flags) {
       TuneAll(*inputs, options, flags.quiet, &*journal);
   if (!lights.ok()) return Fail(kExitBadInput, lights.status());
   if (!flags.quiet) {
-    const std::string text = TuneReportText(HeadingOf(*inputs, options), options, *lights);
+    const std::string text =
+        TuneReportText(HeadingOf(*inputs, options), options, *lights, flags.compare.legend);
     std::fputs(text.c_str(), stdout);
     std::fflush(stdout);
   }

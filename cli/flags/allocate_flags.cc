@@ -24,8 +24,10 @@ constexpr char kExamples[] =
     "  lightfit allocate 0001.exr --lights scene.json --budget 4096x4096 --json maps.json\n"
     "  lightfit allocate 0001.exr --lights scene.json --budget 2048x2048 --power-of-two "
     "--weight sun=2\n"
-    "  lightfit allocate 0001.exr --lights scene.json --tolerance rms:1.0 --image 1920x1080\n"
-    "  lightfit allocate 0001.exr --lights scene.json --tolerance p99:1.5\n"
+    "  lightfit allocate 0001.exr --lights scene.json --tolerance rms:1.0\n"
+    "  lightfit allocate 0001.exr --lights scene.json --tolerance p99:3\n"
+    "  lightfit allocate 0001.exr --lights scene.json --tolerance p99:4 --image 1920x1080 --only "
+    "key\n"
     "  lightfit allocate --summary shot.summary --budget 4096x4096 --json maps.json\n"
     "  lightfit allocate 0001.exr --lights scene.json --budget 4096x4096 --maps 4 --json "
     "maps.json\n"
@@ -35,7 +37,8 @@ constexpr char kExamples[] =
     "A tolerance bounds how far one texel reaches on the screen at the shadow edges, in pixels of\n"
     "the final image: in the root mean square (rms), for 99 % of the edge pixels of the read-back\n"
     "(p99), or for all of them (worst). It holds for those pixels, each measured; nothing is\n"
-    "promised in between. The fit then minimises that figure, so that --metric does not apply.\n"
+    "promised in between. Where no map keeps it the message says what could be kept. The fit then "
+    "minimises that figure, so that --metric does not apply.\n"
     "Summaries of a whole shot take a budget, or where they were summed with --metric l2 an rms\n"
     "tolerance, of all frames' edge pixels together and in pixels of the read-backs. Sums of the\n"
     "l1 metrics weigh samples by square maps; to weigh them by the maps found, run lightfit\n"
@@ -186,6 +189,7 @@ void DeclareAllocateFlags(CLI::App* app, AllocateFlags* flags) {
   app->add_option("--json", fit->json_path, "Write the sizes, matrices and figures to this file")
       ->type_name("FILE.json")
       ->group(output);
+  DeclareLegendFlag(app, output, &fit->legend);
   app->add_flag("--quiet", fit->quiet, "No table and no progress; errors and warnings only")
       ->group(output);
   app->footer(kExamples);
@@ -227,6 +231,13 @@ std::string ToleranceText(const Tolerance& tolerance) {
       break;
   }
   return "every footprint" + limit;
+}
+
+std::string ToleranceThatHolds(const Tolerance& tolerance, double reached_px) {
+  // Three digits, rounded up.
+  const double unit = std::pow(10.0, std::floor(std::log10(reached_px)) - 2.0);
+  const double limit = std::ceil(reached_px / unit) * unit;
+  return absl::StrFormat("%s:%.3g", WordFor(ToleranceWords(), tolerance.kind), limit);
 }
 
 absl::StatusOr<std::pair<std::string, double>> ParseWeight(const std::string& text) {

@@ -24,7 +24,7 @@ constexpr char kExamples[] =
     "Examples:\n"
     "  lightfit compare sponza.glb --camera 3.5,1.7,-4.2:-9,2.2,-4.4:55 --light sun=sun:1,-3,0.5 "
     "\\\n"
-    "      --picture methods.png\n"
+    "      --picture methods.png --masks masks\n"
     "  lightfit compare generate --camera 0,1.7,18:0,0.5,0 --random-lights 500 --csv lights.csv\n"
     "  lightfit compare frame.exr --lights scene.json --matrix engine=engine.json\n"
     "  lightfit compare sponza.glb --camera 3.5,1.7,-4.2:-9,2.2,-4.4:55 --light sun=sun:1,-3,0.5 "
@@ -191,6 +191,14 @@ void DeclareOutput(CLI::App* app, CompareFlags* flags) {
       ->check(CLI::IsMember({"ideal", "practical"}))
       ->type_name("ideal|practical")
       ->group(group);
+  app->add_option("--masks",
+                  flags->masks_path,
+                  "Write an image of each light's wrong pixels into this folder, LIGHT.exr: "
+                  "channels METHOD.ideal and METHOD.practical, 1 where the method is wrong, and "
+                  "truth.shadow, truth.facing")
+      ->type_name("FOLDER")
+      ->group(group);
+  DeclareLegendFlag(app, group, &flags->legend);
   app->add_flag("--quiet", flags->quiet, "No table and no progress; errors and warnings only")
       ->group(group);
 }

@@ -55,6 +55,8 @@ struct CompareFlags {
   std::string picture_path;
   std::string picture_light;  // empty: MostTellingLight()
   Bias picture_bias = Bias::kIdeal;
+  std::string masks_path;  // a folder
+  bool legend = false;     // say what the columns of tables mean
   bool quiet = false;
 
   bool is_readback() const;  // rather than a scene

@@ -19,9 +19,10 @@ constexpr char kMethodGroup[] = "Method";
 constexpr char kExamples[] =
     "Examples:\n"
     "  lightfit fit 0001.exr --lights scene.json --json matrices.json --picture gain.png\n"
-    "  lightfit fit 0001.exr --light sun=sun:-0.3,0.2,-1 --map 2048x1024 --clip direct3d\n"
+    "  lightfit fit 0001.exr --light sun=sun:-0.93,-0.24,-0.27 --map 2048x1024 --clip direct3d\n"
     "  lightfit fit 0001.exr --lights scene.json --maps 4 --texels 2048x2048 --json maps.json\n"
     "  lightfit fit 0001.exr --lights scene.json --only key --as-published\n"
+    "  lightfit fit 0001.exr --lights scene.json --csv lights.csv --footprint pixels.exr\n"
     "  lightfit fit --summary part1.summary part2.summary --json shot.json\n"
     "\n"
     "Units: positions and depth in world units, maps in texels, images in pixels.\n"
@@ -83,6 +84,12 @@ void CheckNeedsOfFit(const CLI::App& app, const FitFlags& flags) {
                                "needs the pixels of a read-back, and a summary has none; draw one "
                                "frame with lightfit fit READBACK.exr --picture");
   }
+  for (const char* flag : {"--csv", "--footprint"}) {
+    if (app.count(flag) == 0) continue;
+    throw CLI::ValidationError(flag,
+                               "needs the pixels of a read-back, and a summary has none; name one "
+                               "frame, lightfit fit READBACK.exr, or with --csv run lightfit shot");
+  }
   if (app.count("--as-published") > 0) {
     throw CLI::ValidationError("--as-published",
                                "goes through the samples one by one, and a summary has their sums "
@@ -110,6 +117,16 @@ void DeclareOutput(CLI::App* app, FitFlags* flags) {
   app->add_option("--picture", flags->picture_path, "Draw before and after, per light")
       ->type_name("FILE.png")
       ->group(group);
+  app->add_option("--csv", flags->csv_path, "Write one line for each light, with all figures")
+      ->type_name("FILE.csv")
+      ->group(group);
+  app->add_option("--footprint",
+                  flags->footprint_path,
+                  "Write an image of each light's footprints and of the wrong pixels foretold, "
+                  "channels footprint.LIGHT and wrong.LIGHT")
+      ->type_name("FILE.exr")
+      ->group(group);
+  DeclareLegendFlag(app, group, &flags->legend);
   app->add_flag("--quiet", flags->quiet, "No table and no progress; errors and warnings only")
       ->group(group);
 }
@@ -287,6 +304,10 @@ void DeclareClipFlag(CLI::App* app, const std::string& group, ClipConvention* cl
   AddChoice(
       app, "--clip", ClipWords(), clip, "Clip space of clipFromWorld in the JSON file [vulkan]")
       ->group(group);
+}
+
+void DeclareLegendFlag(CLI::App* app, const std::string& group, bool* legend) {
+  app->add_flag("--legend", *legend, "Say below the table what its columns mean")->group(group);
 }
 
 void DeclareFitFlags(CLI::App* app, FitFlags* flags) {

@@ -89,6 +89,7 @@ void DeclareOutput(CLI::App* app, ShotFlags* flags) {
       ->type_name("COUNT")
       ->check(CLI::Range(1, 1024))
       ->group(group);
+  DeclareLegendFlag(app, group, &flags->fit.legend);
   app->add_flag("--quiet", flags->fit.quiet, "No table and no progress; errors and warnings only")
       ->group(group);
 }

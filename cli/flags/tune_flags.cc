@@ -66,6 +66,7 @@ void DeclareTuneFlags(CLI::App* app, TuneFlags* flags) {
                   "FILE.journal]")
       ->type_name("FILE")
       ->group(output);
+  DeclareLegendFlag(app, output, &flags->compare.legend);
   app->add_flag("--quiet", flags->quiet, "No table and no progress; errors and warnings only")
       ->group(output);
   app->footer(kExamples);

@@ -74,6 +74,23 @@ absl::StatusOr<double> ForetellWrongShare(const Readback& readback,
   return std::min(*share + outside.value_or(0.0), 1.0);
 }
 
+absl::StatusOr<std::vector<float>> ForetellWrongImage(const Readback& readback,
+                                                      const Light& light,
+                                                      absl::Span<const SizedMatrix> maps,
+                                                      const SampleOptions& options,
+                                                      Border border) {
+  const absl::StatusOr<PixelFootprints> footprints =
+      PixelFootprints::Create(readback, light, maps, options);
+  if (!footprints.ok()) return footprints.status();
+  std::vector<float> image(readback.depth.size(), 0.0F);
+  const absl::Status status =
+      readback.KnowsFacing(light.shadow_bit)
+          ? ForetellImageByState(readback, light, *footprints, border, absl::MakeSpan(image))
+          : ForetellImageByBits(readback, light, *footprints, border, absl::MakeSpan(image));
+  if (!status.ok()) return status;
+  return image;
+}
+
 double ForecastFactor(const Readback& readback, const Light& light) {
   // Measured at 180x180 over ten scenes: docs/defaults.md.
   return readback.KnowsFacing(light.shadow_bit) ? 1.8 : 2.3;

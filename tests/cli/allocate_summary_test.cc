@@ -54,7 +54,8 @@ TEST(AllocateSummary, OneFrameInSquaresGivesTheSizesOfItsReadBack) {
       {{"--tolerance", "rms:1.0"}, {}}};
   for (const auto& [goal, metric] : goals) {
     SCOPED_TRACE(goal[1]);
-    const ProcessResult result = AllocateSummary(summary, Joined(goal, {"--json", summed}));
+    const ProcessResult result =
+        AllocateSummary(summary, Joined(goal, {"--json", summed, "--legend"}));
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_THAT(result.err, IsEmpty());
     EXPECT_THAT(result.out,

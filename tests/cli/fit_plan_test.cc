@@ -166,7 +166,8 @@ TEST(FitPlan, PrintsPlansBesideSingleMapsOfAsManyTexels) {
                             "energy",
                             "both 400 x 400",
                             "shadow-edge",
-                            "read-back pixels"}) {
+                            "footprint, px",
+                            "\n\nColumns: lightfit fit --help, or --legend here.\n"}) {
     EXPECT_THAT(result.out, HasSubstr(words));
   }
   int num_sun_rows = 0;
