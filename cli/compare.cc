@@ -206,7 +206,11 @@ int RunCompare(const CompareFlags& flags) {
     std::fputs(text.c_str(), stdout);
     std::fflush(stdout);
   }
-  const int num_failed = PrintFailedLights(comparisons, plan.has_value());
+  int num_failed = PrintFailedLights(comparisons, plan.has_value());
+  if (!flags.is_readback()) {
+    const absl::StatusOr<std::vector<ListedLight>> lights = ListLights(flags.scene.lights);
+    if (lights.ok()) num_failed += PrintUnusable(*lights, "shadow");
+  }
   status = WriteOutputs(flags, *inputs, comparisons);
   if (!status.ok()) return Fail(kExitBadInput, status);
   return num_failed > 0 ? kExitIncomplete : kExitOk;

@@ -177,6 +177,17 @@ Outcome FitAndDraw(const FitFlags& flags, const FitOptions& options, const FitIn
   return outcome;
 }
 
+// Of lights beyond those that the picture shows.
+void AddOutcome(Outcome added, Outcome* outcome) {
+  if (outcome->comparisons.empty()) {
+    *outcome = std::move(added);
+    return;
+  }
+  for (FitComparison& comparison : added.comparisons) {
+    outcome->comparisons.push_back(std::move(comparison));
+  }
+}
+
 absl::Status WriteOutputs(const FitFlags& flags,
                           const FitOptions& options,
                           const FitInputs& inputs,
@@ -224,10 +235,20 @@ int RunFit(const FitFlags& flags) {
   if (!status.ok()) return Fail(kExitUsage, status);
   status = CheckOutputs(flags);
   if (!status.ok()) return Fail(kExitBadInput, status);
-  const absl::StatusOr<FitInputs> inputs = ReadFitInputs(flags);
-  if (!inputs.ok()) return Fail(kExitBadInput, inputs.status());
-
-  const Outcome outcome = FitAndDraw(flags, options, *inputs);
+  const absl::StatusOr<std::vector<ListedLight>> lights = ListFitLights(flags);
+  if (!lights.ok()) return Fail(kExitBadInput, lights.status());
+  absl::StatusOr<FitInputs> inputs;  // of the first lights
+  Outcome outcome;
+  for (std::vector<ListedLight>& group : GroupsOfLights(*lights)) {
+    absl::StatusOr<FitInputs> of_group = ReadFitInputs(flags, std::move(group));
+    if (!of_group.ok()) return Fail(kExitBadInput, of_group.status());
+    AddOutcome(FitAndDraw(flags, options, *of_group), &outcome);
+    if (!inputs.ok()) inputs = std::move(of_group);
+  }
+  if (!flags.picture_path.empty() && outcome.comparisons.size() > inputs->lights.size()) {
+    PrintWarning(absl::StrCat(
+        "--picture shows the first ", inputs->lights.size(), " lights; choose others with --only"));
+  }
   if (!flags.quiet) {
     const Readback readback = inputs->View();
     const std::string source = SourceText(flags, inputs->file);

@@ -283,7 +283,8 @@ int RunRender(const RenderFlags& flags) {
   if (absl::Status status = WriteOutputs(flags, *inputs, *outcome); !status.ok()) {
     return Fail(kExitBadInput, status);
   }
-  return kExitOk;
+  const absl::StatusOr<std::vector<ListedLight>> lights = ListLights(flags.scene.lights);
+  return lights.ok() && PrintUnusable(*lights, "shadow") > 0 ? kExitIncomplete : kExitOk;
 }
 
 }  // namespace

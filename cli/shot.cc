@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "cli/exit_code.h"
+#include "cli/flags/fit_inputs.h"
 #include "cli/reports/legend.h"
 #include "cli/reports/shot_report.h"
 #include "jobs/shot/run.h"
@@ -76,7 +77,9 @@ int RunShotVerb(const ShotFlags& flags) {
   for (const std::string& note : context.notes) PrintWarning(note);
   const std::vector<std::string> errors = ShotErrors(context);
   for (const std::string& error : errors) PrintError(error);
-  return errors.empty() ? kExitOk : kExitIncomplete;
+  const absl::StatusOr<std::vector<ListedLight>> lights = ListFitLights(flags.fit);
+  const int num_unusable = lights.ok() ? PrintUnusable(*lights, "matrix") : 0;
+  return errors.empty() && num_unusable == 0 ? kExitOk : kExitIncomplete;
 }
 
 }  // namespace lightfit::cli

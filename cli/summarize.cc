@@ -293,6 +293,10 @@ int RunSummarize(const SummarizeFlags& flags) {
   if (!flags.fit.quiet) std::fputs(ReportText(*sum).c_str(), stdout);
   std::fflush(stdout);
   const bool is_complete = PrintMissingFrames(*sum, sets, is_summary);
+  if (!job->lights.empty()) {
+    const absl::StatusOr<std::vector<ListedLight>> lights = ListFitLights(flags.fit);
+    if (lights.ok()) num_failed += PrintUnusable(*lights, "summary");
+  }
   return num_failed > 0 || !is_complete ? kExitIncomplete : kExitOk;
 }
 

@@ -136,7 +136,9 @@ int RunTune(const TuneFlags& flags) {
     std::fputs(text.c_str(), stdout);
     std::fflush(stdout);
   }
-  const int num_failed = PrintFailedLights(*lights);
+  int num_failed = PrintFailedLights(*lights);
+  const absl::StatusOr<std::vector<ListedLight>> listed = ListLights(flags.compare.scene.lights);
+  if (listed.ok()) num_failed += PrintUnusable(*listed, "matrix");
   if (!flags.json_path.empty()) {
     status = WriteFitResultJson(
         flags.json_path,

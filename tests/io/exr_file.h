@@ -88,9 +88,14 @@ inline std::vector<char> NativePixels(const ExrPart& part, const Channel& channe
 }
 
 // Writes the parts; a file with several is a multi-part file.
-inline void WriteExr(const std::string& path, const std::vector<ExrPart>& parts) {
+inline void WriteExr(const std::string& path,
+                     const std::vector<ExrPart>& parts,
+                     Imf::Compression compression = Imf::ZIP_COMPRESSION) {
   std::vector<Imf::Header> headers;
-  for (const ExrPart& part : parts) headers.push_back(HeaderOf(part));
+  for (const ExrPart& part : parts) {
+    headers.push_back(HeaderOf(part));
+    headers.back().compression() = compression;
+  }
   const int count = static_cast<int>(headers.size());
   Imf::MultiPartOutputFile file(path.c_str(), headers.data(), count);
   for (int i = 0; i < count; ++i) {
