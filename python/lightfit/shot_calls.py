@@ -66,6 +66,7 @@ class _Job:
     size: MapSize
     options: options_pb2.FitOptions
     clip: Clip
+    step: int
     timeout_s: Optional[float]
     request_id: Optional[str]
 
@@ -74,6 +75,7 @@ class _Job:
 class _Before:
     """The frame before, that crawl is measured to."""
 
+    number: int = 0
     readback: Optional[readback_pb2.Readback] = None
     maps: Dict[str, matrix_pb2.Matrix4x4] = dataclasses.field(default_factory=dict)  # by light
 
@@ -91,6 +93,7 @@ class ShotCalls(SummaryCalls):
         stability: Optional[float] = None,
         tracker: Optional[shot_pb2.TrackerSettings] = None,
         rounds: int = 2,
+        step: int = 1,
         options: Optional[Options] = None,
         clip: Clip = "vulkan",
         timeout_s: Optional[float] = None,
@@ -110,6 +113,8 @@ class ShotCalls(SummaryCalls):
         stability, tracker: as for `track`.
         rounds: the l1 metrics: how often the samples are weighed anew for the whole shot, in its own
             map.
+        step: how far the numbers of neighbouring frames are apart; where it is more, frames are
+            missing, and no crawl is measured over the gap.
         map_size, options, clip: as for `fit`. timeout_s: of each call that this takes.
 
             for step in lightfit.shot(frames, lights, (1024, 1024), modes=("tracked",)):
@@ -120,7 +125,7 @@ class ShotCalls(SummaryCalls):
         map_size_message(map_size)
         clip_message(clip)
         fit_options = options_message(options) or options_pb2.FitOptions()
-        job = _Job(map_size, fit_options, clip, timeout_s, request_id)
+        job = _Job(map_size, fit_options, clip, step, timeout_s, request_id)
         setup = track_setup(map_size, stability, tracker, fit_options, clip, ())
         return self._steps(frames, lights, wanted, setup, rounds, job)
 
@@ -245,6 +250,8 @@ class ShotCalls(SummaryCalls):
     ) -> ShotStep:
         """The matrices with their figures on this frame, by one measure for all modes, and their
         crawl; from then on this is the frame before."""
+        if before.readback is not None and frame.number - before.number > job.step:
+            before.readback, before.maps = None, {}
         readback = readback_pb2.Readback()
         readback.CopyFrom(frame.parts.header)
         frame.parts.pixels.fill(readback)
@@ -261,7 +268,7 @@ class ShotCalls(SummaryCalls):
         result.readback.camera.CopyFrom(frame.parts.header.camera)
         result.shot.mode = _MODE_NUMBERS[mode]
         result.shot.number = frame.number
-        before.readback = readback
+        before.number, before.readback = frame.number, readback
         before.maps = {
             light.name: light.map_from_world for light in result.lights if light.status.code == 0
         }

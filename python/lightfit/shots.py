@@ -145,6 +145,7 @@ def _parts_of_exr(frame: ExrReadback) -> ReadbackParts:
 
 
 def _number_of(path: str) -> Optional[int]:
-    """The digits at the end of the file's name."""
-    digits = re.search(r"(\d+)$", os.path.splitext(os.path.basename(path))[0])
-    return int(digits.group(1)) if digits else None
+    """The digits at the end of the file's name, and a minus that is no part of the words."""
+    stem = os.path.splitext(os.path.basename(path))[0]
+    digits = re.search(r"(?:^|(?<=[._ ]))-?\d+$|\d+$", stem)
+    return int(digits.group()) if digits else None

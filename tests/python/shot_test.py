@@ -12,6 +12,7 @@ import pytest
 from google.protobuf import json_format
 
 import lightfit
+from lightfit.shots import _number_of
 from lightfit.v1 import result_pb2
 from readbacks import large_readback
 from serving import program
@@ -156,6 +157,27 @@ def test_modes_may_be_chosen() -> None:
                                   for f in frames], MAP)
     for light in steps[0].result.lights:
         assert numpy.array_equal(light.map_from_world, whole[light.name].map_from_world)
+
+
+def test_no_crawl_is_measured_over_missing_frames() -> None:
+    frames, lights = few_frames()
+    numbered = [dataclasses.replace(frame, number=number)
+                for frame, number in zip(frames, (-3, -1, 5))]
+    for step, have_crawl in ((1, [False] * 3), (2, [False, True, False]), (6, [False, True, True])):
+        for mode in ("per-frame", "tracked", "per-shot"):
+            found = [s for s in lightfit.shot(numbered, lights, MAP, modes=mode, step=step)
+                     if s.frame is not None]
+            assert [s.frame for s in found] == [-3, -1, 5]
+            assert [s.result["sun"].message.shot.HasField("crawl") for s in found] == have_crawl
+
+
+@pytest.mark.parametrize(
+    "name, number",
+    [("0001.exr", 1), ("walk.1001.exr", 1001), ("walk-0007.exr", 7), ("walk.-003.exr", -3),
+     ("-12.exr", -12), ("beauty.exr", None), ("shot_v2.exr", 2)],
+)
+def test_files_tell_their_number(name: str, number: Optional[int]) -> None:
+    assert _number_of(f"/shots/a1/{name}") == number
 
 
 def test_a_light_may_move_where_no_map_is_for_all_frames() -> None:
