@@ -1,8 +1,9 @@
 #include "calls/evaluate_call.h"
 
-#include <Eigen/LU>
 #include <algorithm>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -10,14 +11,17 @@
 #include "absl/strings/str_join.h"
 #include "base/stop.h"
 #include "base/text_file.h"
+#include "calls/candidate_matrix.h"
 #include "calls/message_text.h"
 #include "calls/pixel_buffer.h"
 #include "calls/request_fields.h"
 #include "calls/request_lights.h"
 #include "calls/request_options.h"
 #include "optimizer/evaluate.h"
+#include "optimizer/figures/stability.h"
 #include "optimizer/fit.h"
 #include "wire/camera_proto.h"
+#include "wire/crawl_proto.h"
 #include "wire/matrix_proto.h"
 #include "wire/options_proto.h"
 #include "wire/proto_json.h"
@@ -45,24 +49,30 @@ absl::StatusOr<Light> LightNamed(const std::string& name, const std::vector<Requ
   return found->light;
 }
 
-absl::StatusOr<Eigen::Matrix4d> MapFromWorldOf(const v1::CandidateMatrix& candidate, MapSize map) {
-  if (candidate.has_map_from_world()) {
-    return MatrixFromProto(candidate.map_from_world(), "map_from_world");
+absl::StatusOr<Crawl> CrawlFromBefore(const v1::CandidateMatrix& candidate,
+                                      const Eigen::Matrix4d& map_from_world,
+                                      MapSize map,
+                                      const Light& light,
+                                      const Surfaces& surfaces,
+                                      const Readback* before,
+                                      const FitOptions& options) {
+  if (before == nullptr) {
+    return absl::InvalidArgumentError(
+        "map_from_world_before: want the read-back of that frame as well, in before");
   }
-  if (!candidate.has_clip_from_world()) {
-    return absl::InvalidArgumentError("want map_from_world or clip_from_world");
-  }
-  const absl::StatusOr<Eigen::Matrix4d> clip_from_world =
-      MatrixFromProto(candidate.clip_from_world(), "clip_from_world");
-  if (!clip_from_world.ok()) return clip_from_world.status();
-  const absl::StatusOr<ClipConvention> clip = ClipOfRequest(candidate);
-  if (!clip.ok()) return clip.status();
-  return Eigen::Matrix4d(ClipFromMap(map, *clip).inverse() * *clip_from_world);
+  const absl::StatusOr<Eigen::Matrix4d> map_from_world_before =
+      MatrixFromProto(candidate.map_from_world_before(), "map_from_world_before");
+  if (!map_from_world_before.ok()) return map_from_world_before.status();
+  return MeasureCrawl({*before, *map_from_world_before, map},
+                      {surfaces.readback, map_from_world, map, &surfaces},
+                      light,
+                      options.samples);
 }
 
 absl::StatusOr<v1::Evaluation> Evaluate(const v1::CandidateMatrix& candidate,
                                         const std::vector<RequestLight>& lights,
                                         const absl::StatusOr<Surfaces>& surfaces,
+                                        const Readback* before,
                                         const FitOptions& options) {
   const absl::StatusOr<Light> light = LightNamed(candidate.light(), lights);
   if (!light.ok()) return light.status();
@@ -82,6 +92,12 @@ absl::StatusOr<v1::Evaluation> Evaluate(const v1::CandidateMatrix& candidate,
   *evaluation.mutable_samples() = SampleCountsToProto(figures->samples);
   evaluation.set_num_behind(figures->footprint.num_behind);
   evaluation.set_wrong_share(*figures->wrong_share);
+  if (candidate.has_map_from_world_before()) {
+    const absl::StatusOr<Crawl> crawl =
+        CrawlFromBefore(candidate, *map_from_world, *map, *light, *surfaces, before, options);
+    if (!crawl.ok()) return crawl.status();
+    *evaluation.mutable_crawl() = CrawlToProto(*crawl);
+  }
   if (absl::Status status = CheckFinite(evaluation, "evaluation"); !status.ok()) {
     return absl::InvalidArgumentError(absl::StrCat(
         "its figures are beyond numbers (", status.message(), "): is the matrix of this scene?"));
@@ -111,6 +127,15 @@ absl::StatusOr<v1::EvaluateResult> AnswerEvaluate(const v1::EvaluateRequest& req
   const absl::StatusOr<ReadbackView> readback =
       ReadbackView::Of(request.readback(), request.lights_size(), context.limits);
   if (!readback.ok()) return readback.status();
+  std::optional<ReadbackView> before;
+  if (request.has_before()) {
+    absl::StatusOr<ReadbackView> view =
+        ReadbackView::Of(request.before(), request.lights_size(), context.limits);
+    absl::Status status = view.status();
+    if (status.ok()) status = ValidateReadback(view->view());
+    if (!status.ok()) return InFile("before", status);
+    before.emplace(*std::move(view));
+  }
 
   std::vector<Light> usable;
   for (const RequestLight& light : *lights) {
@@ -122,7 +147,8 @@ absl::StatusOr<v1::EvaluateResult> AnswerEvaluate(const v1::EvaluateRequest& req
   v1::EvaluateResult result;
   for (int i = 0; i < request.matrices_size(); ++i) {
     const v1::CandidateMatrix& candidate = request.matrices(i);
-    absl::StatusOr<v1::Evaluation> evaluation = Evaluate(candidate, *lights, surfaces, *options);
+    absl::StatusOr<v1::Evaluation> evaluation =
+        Evaluate(candidate, *lights, surfaces, before ? &before->view() : nullptr, *options);
     if (StopRequested()) return StoppedError();
     v1::Evaluation& entry = *result.add_evaluations();
     if (evaluation.ok()) entry = *evaluation;

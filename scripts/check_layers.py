@@ -58,6 +58,7 @@ MAY_INCLUDE = {
     "jobs/shot": f"{IO} jobs",
     "picture": f"{JOBS} methods render",
     "calls": f"{IO} jobs",
+    "calls/compare_call.cc": f"{IO} jobs jobs/compare calls",
     "server": "base lightfit io calls",
     "cli/flags": EVERYTHING_BELOW_CLI,
     "cli/reports": f"{EVERYTHING_BELOW_CLI} cli/flags",

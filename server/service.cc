@@ -1,8 +1,10 @@
 #include "server/service.h"
 
 #include "calls/allocate_call.h"
+#include "calls/compare_call.h"
 #include "calls/evaluate_call.h"
 #include "calls/fit_call.h"
+#include "calls/summarize_call.h"
 #include "calls/summary_call.h"
 #include "server/fit_stream_call.h"
 #include "server/track_call.h"
@@ -46,6 +48,20 @@ grpc::ServerUnaryReactor* LightFitService::Allocate(grpc::CallbackServerContext*
                                                     grpc::ByteBuffer* result) {
   return new UnaryCall<v1::AllocateRequest, v1::Allocation>(
       parts_, "Allocate", context, request, result, &AnswerAllocate);
+}
+
+grpc::ServerUnaryReactor* LightFitService::Summarize(grpc::CallbackServerContext* context,
+                                                     const grpc::ByteBuffer* request,
+                                                     grpc::ByteBuffer* result) {
+  return new UnaryCall<v1::SummarizeRequest, v1::SummarizeResult>(
+      parts_, "Summarize", context, request, result, &AnswerSummarize);
+}
+
+grpc::ServerUnaryReactor* LightFitService::Compare(grpc::CallbackServerContext* context,
+                                                   const grpc::ByteBuffer* request,
+                                                   grpc::ByteBuffer* result) {
+  return new UnaryCall<v1::CompareRequest, v1::Comparison>(
+      parts_, "Compare", context, request, result, &AnswerCompare);
 }
 
 }  // namespace lightfit

@@ -14,7 +14,9 @@ namespace lightfit {
 using LightFitInBytes = v1::LightFit::WithRawCallbackMethod_Fit<
     v1::LightFit::WithRawCallbackMethod_FitStream<v1::LightFit::WithRawCallbackMethod_Track<
         v1::LightFit::WithRawCallbackMethod_FitSummary<v1::LightFit::WithRawCallbackMethod_Evaluate<
-            v1::LightFit::WithRawCallbackMethod_Allocate<v1::LightFit::Service>>>>>>;
+            v1::LightFit::WithRawCallbackMethod_Allocate<
+                v1::LightFit::WithRawCallbackMethod_Summarize<
+                    v1::LightFit::WithRawCallbackMethod_Compare<v1::LightFit::Service>>>>>>>>;
 
 class LightFitService final : public LightFitInBytes {
  public:
@@ -37,6 +39,13 @@ class LightFitService final : public LightFitInBytes {
   grpc::ServerUnaryReactor* Allocate(grpc::CallbackServerContext* context,
                                      const grpc::ByteBuffer* request,
                                      grpc::ByteBuffer* result) override;
+
+  grpc::ServerUnaryReactor* Summarize(grpc::CallbackServerContext* context,
+                                      const grpc::ByteBuffer* request,
+                                      grpc::ByteBuffer* result) override;
+  grpc::ServerUnaryReactor* Compare(grpc::CallbackServerContext* context,
+                                    const grpc::ByteBuffer* request,
+                                    grpc::ByteBuffer* result) override;
 
  private:
   ServerParts* parts_;

@@ -39,16 +39,31 @@ RequestSize SizeOf(const v1::FitRequest& request) {
 RequestSize SizeOf(const v1::FitSummaryRequest& request) { return {0, BytesOf(request)}; }
 
 RequestSize SizeOf(const v1::EvaluateRequest& request) {
-  return SizeWithReadback(BytesOf(request), request.readback());
+  const RequestSize size = SizeWithReadback(BytesOf(request), request.readback());
+  if (!request.has_before()) return size;
+  const RequestSize before = SizeWithReadback(0, request.before());
+  return {size.pixels + before.pixels, size.bytes + before.bytes};
 }
 
 RequestSize SizeOf(const v1::AllocateRequest& request) {
   return SizeWithReadback(BytesOf(request), request.readback());
 }
 
+RequestSize SizeOf(const v1::SummarizeRequest& request) {
+  return SizeWithReadback(BytesOf(request), request.readback());
+}
+
+RequestSize SizeOf(const v1::CompareRequest& request) {
+  return SizeWithReadback(BytesOf(request), request.readback());
+}
+
 void NoteResult(const v1::FitResult& result, Call* call) { call->NoteLights(result.lights()); }
 
 void NoteResult(const v1::EvaluateResult& /*result*/, Call* /*call*/) {}
+
+void NoteResult(const v1::SummarizeResult& /*result*/, Call* /*call*/) {}
+
+void NoteResult(const v1::Comparison& /*result*/, Call* /*call*/) {}
 
 void NoteResult(const v1::Allocation& result, Call* call) { call->NoteLights(result.lights()); }
 

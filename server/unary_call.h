@@ -26,11 +26,15 @@ RequestSize SizeOf(const v1::FitRequest& request);
 RequestSize SizeOf(const v1::FitSummaryRequest& request);
 RequestSize SizeOf(const v1::EvaluateRequest& request);
 RequestSize SizeOf(const v1::AllocateRequest& request);
+RequestSize SizeOf(const v1::SummarizeRequest& request);
+RequestSize SizeOf(const v1::CompareRequest& request);
 
 // The lights of a result go to the metrics.
 void NoteResult(const v1::FitResult& result, Call* call);
 void NoteResult(const v1::EvaluateResult& result, Call* call);
 void NoteResult(const v1::Allocation& result, Call* call);
+void NoteResult(const v1::SummarizeResult& result, Call* call);
+void NoteResult(const v1::Comparison& result, Call* call);
 
 // Deletes itself when gRPC is done with it.
 template <typename Request, typename Result>

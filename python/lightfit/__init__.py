@@ -8,8 +8,8 @@
     result = lightfit.fit(depth, shadow, camera, lights, (1024, 1024))
     result["sun"].clip_from_world
 
-fit_plan gives each light several maps. All the calls, fit, fit_plan, fit_exr, fit_plan_exr,
-fit_summary, track, track_plan, evaluate and allocate, compute in this process. lightfit.Client has
+fit_plan gives each light several maps. All the calls, fit, fit_plan, track, track_plan, shot,
+summarize, fit_summary, compare, evaluate, allocate and those of EXR files, compute in this process. lightfit.Client has
 the same calls, answered by a server (`lightfit serve`), with the same results.
 
 Matrices are (4, 4) float64 for column vectors and named target_from_source. World units are the
@@ -33,6 +33,7 @@ from lightfit.errors import (
 )
 from lightfit._version import __version__
 from lightfit.calls import Calls
+from lightfit.comparison import ComparedLight, ComparedMethod, ComparedTotal, Comparison
 from lightfit.cover import FineCover
 from lightfit.exr import ExrReadback, read_exr
 from lightfit.inputs import Camera, Light
@@ -49,6 +50,8 @@ from lightfit.result import (
     Samples,
     Status,
 )
+from lightfit.shots import ExrFrames, Frame, ShotStep
+from lightfit.summary import FrameSummary, SummarizedLight
 from lightfit.tracks import Track
 from lightfit.v1.allocation_pb2 import MapSizeRules
 from lightfit.v1.matrix_pb2 import ClipConvention
@@ -68,6 +71,11 @@ fit_plan_exr = _local.fit_plan_exr
 fit_summary = _local.fit_summary
 track = _local.track
 track_plan = _local.track_plan
+summarize = _local.summarize
+summarize_exr = _local.summarize_exr
+compare = _local.compare
+compare_exr = _local.compare_exr
+shot = _local.shot
 evaluate = _local.evaluate
 allocate = _local.allocate
 
@@ -81,15 +89,22 @@ __all__ = [
     "Client",
     "ClipConvention",
     "Code",
+    "ComparedLight",
+    "ComparedMethod",
+    "ComparedTotal",
+    "Comparison",
     "DeadlineError",
     "EvaluateResult",
     "Evaluation",
+    "ExrFrames",
     "ExrReadback",
     "FailedPreconditionError",
     "FineCover",
     "FitOptions",
     "FitResult",
     "Footprint",
+    "Frame",
+    "FrameSummary",
     "InvalidArgumentError",
     "Light",
     "LightResult",
@@ -101,7 +116,9 @@ __all__ = [
     "PlanOptions",
     "PlanTrackerSettings",
     "Samples",
+    "ShotStep",
     "Status",
+    "SummarizedLight",
     "TlsOptions",
     "Tolerance",
     "TooLargeError",
@@ -110,6 +127,8 @@ __all__ = [
     "UnavailableError",
     "__version__",
     "allocate",
+    "compare",
+    "compare_exr",
     "evaluate",
     "fit",
     "fit_exr",
@@ -117,6 +136,9 @@ __all__ = [
     "fit_plan_exr",
     "fit_summary",
     "read_exr",
+    "shot",
+    "summarize",
+    "summarize_exr",
     "track",
     "track_plan",
 ]

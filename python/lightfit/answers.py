@@ -31,7 +31,7 @@ class Answers(abc.ABC):
     def _call(
         self, method: str, request: Any, timeout_s: Optional[float], request_id: Optional[str]
     ) -> Any:
-        """A call of one request and one result: "FitSummary", "Evaluate" or "Allocate"."""
+        """A call of one request and one result: "FitSummary", "Evaluate", "Allocate" ...."""
 
     @abc.abstractmethod
     def _track(

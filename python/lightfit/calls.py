@@ -15,11 +15,9 @@ from lightfit.inputs import (
     PlanOptions,
     plan_message,
 )
-from lightfit.plan_calls import PlanCalls
 from lightfit.request import (
     Candidate,
     ReadbackParts,
-    Summary,
     Tolerance,
     allocate_request,
     evaluate_request,
@@ -29,11 +27,13 @@ from lightfit.request import (
     track_setup,
 )
 from lightfit.result import Allocation, EvaluateResult, FitResult
+from lightfit.shot_calls import ShotCalls
+from lightfit.summary import Summary
 from lightfit.tracks import Track
 from lightfit.v1 import allocation_pb2, shot_pb2
 
 
-class Calls(PlanCalls):
+class Calls(ShotCalls):
     """The calls. Arguments that all of them share:
 
     timeout_s: seconds until DeadlineError, in all. None: as the Client was told; without a server,
@@ -130,8 +130,8 @@ class Calls(PlanCalls):
     ) -> FitResult:
         """One matrix per light for all the frames that summaries were made of.
 
-        summaries: files of `lightfit summarize` by name, or their bytes, or SummaryFile messages;
-            all of the same lights and options. They are added up.
+        summaries: results of `summarize`; files of `lightfit summarize` by name, or their bytes, or
+            SummaryFile messages; all of the same lights and options. They are added up.
         options: the search; samples, metric, cover and border are those of the summaries.
         map_size, clip: as for `fit`.
         """

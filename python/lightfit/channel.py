@@ -48,24 +48,43 @@ class TlsOptions:
         )
 
 
+# What gRPC says when the two sides do not agree.
+_TLS_WAYS_OUT = {
+    "is not in peer certificate": "want tls: server_name=, a name that the server's certificate has",
+    "certificate verify failed": "want tls: ca=, the authority that the server's certificate is by",
+    "wrong version number": "the server speaks no TLS: leave tls out",
+}
+
+
 @dataclasses.dataclass(frozen=True)
 class Peer:
     """Who is asked, for messages."""
 
     address: str
     proxy: Optional[Proxy] = None  # that stands between
+    is_tls: bool = False
 
     def about(self, code: Any, details: str) -> str:
         """The details of a call that failed, with what helps to find out why."""
         if code is grpc.StatusCode.UNAVAILABLE:
-            details = f"{self.address}: {details}"
             if self.proxy is None and "failed to connect" in details:
-                details += "; is lightfit serve running there?"
+                details = f"{details}; {self._way_out(details)}"
+            details = f"{self.address}: {details}"
         elif code is grpc.StatusCode.DEADLINE_EXCEEDED:
             details = f"{self.address}: no answer within timeout_s ({details})"
         else:
             return details
         return details if self.proxy is None else f"{details}; {self.proxy.about()}"
+
+    def _way_out(self, details: str) -> str:
+        for words, way_out in _TLS_WAYS_OUT.items():
+            if words in details:
+                return way_out
+        if "Socket closed" not in details:
+            return "is lightfit serve running there?"
+        if self.is_tls:
+            return "does the server ask for a certificate of yours, tls: cert= and key=?"
+        return "does the server want TLS, tls=lightfit.TlsOptions(ca=...)?"
 
 
 def open_channel(
@@ -88,7 +107,7 @@ def open_channel(
         return grpc.insecure_channel(target, options), Peer(address, proxy)
     if tls.server_name:
         options.append(("grpc.ssl_target_name_override", tls.server_name))
-    return grpc.secure_channel(target, tls.credentials(), options), Peer(address, proxy)
+    return grpc.secure_channel(target, tls.credentials(), options), Peer(address, proxy, True)
 
 
 def target_of(address: str) -> Tuple[str, bool]:

@@ -10,12 +10,14 @@ from lightfit.calls import Calls
 from lightfit.errors import CancelledError, LightfitError
 from lightfit.pixels import Pixels
 from lightfit.tracks import Track
-from lightfit.v1 import allocation_pb2, readback_pb2, result_pb2, service_pb2
+from lightfit.v1 import allocation_pb2, comparison_pb2, readback_pb2, result_pb2, service_pb2
 
 _ANSWERS: Dict[str, Any] = {
     "FitSummary": result_pb2.FitResult,
     "Evaluate": service_pb2.EvaluateResult,
     "Allocate": allocation_pb2.Allocation,
+    "Summarize": service_pb2.SummarizeResult,
+    "Compare": comparison_pb2.Comparison,
 }
 
 

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import os
-from pathlib import Path
 from typing import Any, Dict, Iterable, Mapping, Optional, Sequence, Tuple, Union
 
 from numpy.typing import ArrayLike
@@ -26,6 +24,7 @@ from lightfit.inputs import (
     options_message,
 )
 from lightfit.pixels import Pixels, check_pixels
+from lightfit.summary import Summary, add_summaries
 from lightfit.v1 import (
     allocation_pb2,
     light_pb2,
@@ -33,13 +32,8 @@ from lightfit.v1 import (
     result_pb2,
     service_pb2,
     shot_pb2,
-    summary_pb2,
 )
 from lightfit.words import chosen
-
-# A summary: the path of a file of `lightfit summarize`, its bytes, or its message.
-Summary = Union[str, "os.PathLike[str]", bytes, summary_pb2.SummaryFile]
-
 
 # Of every light's map; or of several maps for each light.
 SizeOrPlan = Union[MapSize, result_pb2.PlanOptions]
@@ -73,6 +67,23 @@ def readback_parts(
     return ReadbackParts(header, messages, pixels)
 
 
+def optional_parts(
+    depth: Any,
+    shadow: Any,
+    camera: Optional[AnyCamera],
+    lights: Optional[Lights],
+    source: str,
+    facing: Any = None,
+    mapped: Any = None,
+    cover: Optional[FineCover] = None,
+) -> Optional[ReadbackParts]:
+    """None where there is none of it."""
+    if all(part is None for part in (depth, shadow, camera, lights)):
+        return None
+    given_camera: Any = camera  # says what it wants when it is missing, as the others do
+    return readback_parts(depth, shadow, given_camera, lights or (), source, facing, mapped, cover)
+
+
 def fit_request(
     parts: ReadbackParts,
     size: SizeOrPlan,
@@ -103,7 +114,7 @@ def summary_request(
     request = service_pb2.FitSummaryRequest(
         map=map_size_message(map_size), options=options_message(options), clip=clip_message(clip)
     )
-    _add_summaries(summaries, request)
+    add_summaries(summaries, request)
     return request
 
 
@@ -230,7 +241,7 @@ def allocate_request(
         request.readback.CopyFrom(parts.header)
         request.lights.extend(parts.lights)
         parts.pixels.fill(request.readback)
-    _add_summaries(summaries or (), request)
+    add_summaries(summaries or (), request)
     return request
 
 
@@ -262,26 +273,3 @@ def track_setup(
 def track_frame(number: int, parts: ReadbackParts) -> service_pb2.TrackFrame:
     """Without pixels."""
     return service_pb2.TrackFrame(number=number, readback=parts.header, lights=parts.lights)
-
-
-def _add_summaries(
-    summaries: Sequence[Summary],
-    request: Union[service_pb2.FitSummaryRequest, service_pb2.AllocateRequest],
-) -> None:
-    if isinstance(summaries, (str, bytes, os.PathLike, summary_pb2.SummaryFile)):
-        raise InvalidArgumentError("summaries: is one summary, want a list of them: [summary]")
-    for index, summary in enumerate(summaries):
-        if isinstance(summary, summary_pb2.SummaryFile):
-            request.summaries.append(summary)
-        elif isinstance(summary, bytes):
-            request.summary_files.append(summary)
-        elif isinstance(summary, (str, os.PathLike)):
-            try:
-                request.summary_files.append(Path(summary).read_bytes())
-            except OSError as error:
-                raise InvalidArgumentError(f"{summary}: {error.strerror}") from None
-        else:
-            raise InvalidArgumentError(
-                f"summaries[{index}]: is a {type(summary).__name__}, want the name of a file of "
-                "lightfit summarize, or its bytes"
-            )

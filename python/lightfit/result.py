@@ -121,7 +121,7 @@ class LightResult:
             facing=lower_word(result_pb2.FacingSource, message.facing, "FACING_SOURCE_"),
             energy=message.energies.final if ok else None,
             footprint=footprint_of(message.footprint) if ok else None,
-            samples=_samples(message.samples) if ok else None,
+            samples=samples_of(message.samples) if ok else None,
             evaluations=message.evaluations,
             stop_reason=word_of(result_pb2.StopReason, message.stop_reason, "STOP_REASON_"),
             foretold_wrong=optional(message, "foretold_wrong", lambda part: part.final),
@@ -197,7 +197,7 @@ class Evaluation:
             status=status,
             energy=message.energy if ok else None,
             footprint=footprint_of(message.footprint) if ok else None,
-            samples=_samples(message.samples) if ok else None,
+            samples=samples_of(message.samples) if ok else None,
             num_behind=message.num_behind if ok else None,
             wrong_share=message.wrong_share if ok else None,
             message=message,
@@ -244,5 +244,5 @@ def _named(light: LightResult) -> str:
     return message if name in message else f"{name}: {message}"
 
 
-def _samples(message: result_pb2.SampleCounts) -> Samples:
+def samples_of(message: result_pb2.SampleCounts) -> Samples:
     return Samples(*(getattr(message, field.name) for field in dataclasses.fields(Samples)))

@@ -10,7 +10,7 @@ from lightfit.cover import FineCover
 from lightfit.errors import error_of
 from lightfit.inputs import AnyCamera, Lights
 from lightfit.pixels import Pixels
-from lightfit.request import readback_parts, track_frame
+from lightfit.request import ReadbackParts, readback_parts, track_frame
 from lightfit.result import FitResult
 from lightfit.v1 import service_pb2, shot_pb2
 
@@ -47,6 +47,10 @@ class Track(abc.ABC):
         it was, and the next frame may come.
         """
         parts = readback_parts(depth, shadow, camera, lights, source, facing, mapped, cover)
+        return self.update_parts(number, parts)
+
+    def update_parts(self, number: int, parts: ReadbackParts) -> FitResult:
+        """`update` with what its arguments are made into."""
         answer = self._update(track_frame(number, parts), parts.pixels)
         if answer.status.code != 0:
             raise error_of(answer.status.code, answer.status.message, self._request_id())

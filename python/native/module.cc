@@ -24,11 +24,13 @@
 #include "absl/strings/str_format.h"
 #include "calls/allocate_call.h"
 #include "calls/call_context.h"
+#include "calls/compare_call.h"
 #include "calls/evaluate_call.h"
 #include "calls/fine_cover_buffer.h"
 #include "calls/fit_call.h"
 #include "calls/pixel_buffer.h"
 #include "calls/request_lights.h"
+#include "calls/summarize_call.h"
 #include "calls/summary_call.h"
 #include "calls/track_session.h"
 #include "io/camera_convention.h"
@@ -171,6 +173,12 @@ py::bytes Call(const std::string& method,
   }
   if (method == "Allocate") {
     return answer(Parsed<v1::AllocateRequest>(request_bytes), AnswerAllocate);
+  }
+  if (method == "Summarize") {
+    return answer(Parsed<v1::SummarizeRequest>(request_bytes), AnswerSummarize);
+  }
+  if (method == "Compare") {
+    return answer(Parsed<v1::CompareRequest>(request_bytes), AnswerCompare);
   }
   Raise(absl::UnimplementedError(absl::StrCat("there is no call \"", method, "\"")));
 }

@@ -10,10 +10,12 @@
 
 #include "optimizer/evaluate.h"
 #include "optimizer/figures/figures.h"
+#include "optimizer/figures/stability.h"
 #include "optimizer/fit.h"
 #include "tests/calls/requests.h"
 #include "tests/io/summary_examples.h"
 #include "tests/testing/test_scene.h"
+#include "wire/crawl_proto.h"
 #include "wire/matrix_proto.h"
 #include "wire/options_proto.h"
 
@@ -107,6 +109,33 @@ TEST(EvaluateCall, TakesMatricesInAnyClipSpace) {
       EXPECT_NEAR(result->evaluations(i).energy(), energy, kRounding * energy);
     }
   }
+}
+
+TEST(EvaluateCall, TellsCrawlFromTheFrameBefore) {
+  v1::EvaluateRequest request = YardRequest();
+  const ReadbackFile frame_before = testing::FrameOfYard(1);
+  *request.mutable_before() = testing::ReadbackMessage(frame_before.View());
+  const v1::Matrix4x4 kept = request.matrices(0).map_from_world();
+  v1::Matrix4x4 shifted = kept;  // by a third of a texel to the left
+  for (int column = 0; column < 4; ++column) {
+    shifted.set_m(column, kept.m(column) - kept.m(12 + column) / 3.0);
+  }
+  for (const v1::Matrix4x4& before : {kept, shifted}) {
+    *request.mutable_matrices(0)->mutable_map_from_world_before() = before;
+    const auto result = AnswerEvaluate(request, CallContext());
+    ASSERT_THAT(result, testing::IsOk());
+    EXPECT_FALSE(result->evaluations(1).has_crawl());
+    const auto want = MeasureCrawl({frame_before.View(), *MatrixFromProto(before, ""), kMap},
+                                   {Yard().file.View(), *MatrixFromProto(kept, ""), kMap},
+                                   Yard().lights[0]);
+    ASSERT_THAT(want, testing::IsOk());
+    EXPECT_EQ(result->evaluations(0).crawl().SerializeAsString(),
+              CrawlToProto(*want).SerializeAsString());
+  }
+  request.clear_before();
+  const auto without = AnswerEvaluate(request, CallContext());
+  ASSERT_THAT(without, testing::IsOk());
+  EXPECT_THAT(without->evaluations(0).status().message(), HasSubstr("map_from_world_before: want"));
 }
 
 // Row 3 is the depth that a map stores, and has no part in its figures.

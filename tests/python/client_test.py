@@ -237,14 +237,15 @@ def test_both_sides_may_show_certificates(
         tls = lightfit.TlsOptions(ca=studio / "ca.pem", server_name="lightfit.test", **mine)
         with lightfit.Client(server.address, tls=tls) as client:
             assert client.fit(*arguments, MAP).message == lightfit.fit(*arguments, MAP).message
-        for refused in (
-            lightfit.TlsOptions(ca=other / "ca.pem", server_name="lightfit.test", **mine),
-            lightfit.TlsOptions(ca=studio / "ca.pem", server_name="other.test", **mine),
-            lightfit.TlsOptions(ca=studio / "ca.pem", server_name="lightfit.test"),
-            None,
+        authority, own = studio / "ca.pem", {"server_name": "lightfit.test"}
+        for refused, way_out in (
+            (lightfit.TlsOptions(ca=other / "ca.pem", **own, **mine), "want tls: ca="),
+            (lightfit.TlsOptions(ca=authority, server_name="other.test", **mine), "server_name="),
+            (lightfit.TlsOptions(ca=authority, **own), "tls: cert= and key="),
+            (None, "tls=lightfit.TlsOptions"),
         ):
             with lightfit.Client(server.address, tls=refused, retries=0) as client:
-                with pytest.raises(lightfit.UnavailableError):
+                with pytest.raises(lightfit.UnavailableError, match=way_out):
                     client.fit(*arguments, MAP, timeout_s=20)
     finally:
         assert server.stop() == 0

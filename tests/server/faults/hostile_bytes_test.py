@@ -58,7 +58,7 @@ def bad_words() -> List[bytes]:
     ]
 
 
-UNARY = ("Fit", "FitSummary", "Evaluate", "Allocate")
+UNARY = ("Fit", "FitSummary", "Evaluate", "Allocate", "Summarize", "Compare")
 
 # Field 1 is said to have 100 bytes, and has three.
 CUT_SHORT = b"\x0a\x64abc"
