@@ -16,7 +16,7 @@
 #include "geometry/resized_camera.h"
 #include "io/camera_file.h"
 #include "render/random_suns.h"
-#include "render/scene_file.h"
+#include "scenes/scene_file.h"
 
 namespace lightfit::cli {
 namespace {

@@ -29,7 +29,7 @@
 #include "absl/status/status.h"
 #include "absl/types/span.h"
 #include "partition/shipped/paraboloid.h"
-#include "render/scene.h"
+#include "scenes/scene.h"
 #include "render/shipped/texel_grid.h"
 #include "render/texel_maps.h"
 
