@@ -9,6 +9,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "base/text_file.h"
+#include "scenes/gltf_view.h"
 #include "wire/light_proto.h"
 #include "wire/proto_json.h"
 
@@ -38,7 +39,7 @@ absl::StatusOr<std::vector<Light>> ParseLightsJson(absl::string_view json) {
 }
 
 absl::StatusOr<std::vector<Light>> ReadLightsFile(const std::string& path) {
-  const absl::StatusOr<std::string> json = ReadTextFile(path);
+  const absl::StatusOr<std::string> json = IsGltf(path) ? GltfLightsJson(path) : ReadTextFile(path);
   if (!json.ok()) return json.status();
   absl::StatusOr<std::vector<Light>> lights = ParseLightsJson(*json);
   if (!lights.ok()) return InFile(path, lights.status());

@@ -4,6 +4,7 @@
 // In:   {"lights": [{"name": "key", "position": [x, y, z]}, {"name": "sun", "direction": [x, y,
 // z]}]},
 //       a lightfit.v1.LightList in protobuf JSON (unknown fields are ignored), or "sun=sun:0,0,-1".
+//       Of a .glb or .gltf file its KHR_lights_punctual (scenes/gltf_view.h).
 // Out:  lights, valid, with distinct names and shadow_bit 0, 1, ... in the order of the file.
 //
 // Positions are in world units; a direction is the one in which the light travels, of any length.

@@ -13,6 +13,7 @@ import pytest
 from numpy.typing import NDArray
 
 import lightfit
+from lightfit.v1 import light_pb2
 from gltf_reader import Array, Gltf, depth_image, pixel_rays
 from gltf_samples import write_sample
 from serving import REPOSITORY
@@ -280,3 +281,86 @@ def test_a_scene_far_from_the_origin_has_the_pixels_of_the_same_at_it(
         # A ray that passes an edge within a double's rounding out there, 2e-9, may miss it.
         assert (numpy.isclose(far.depth, near.depth, rtol=1e-6)).mean() > 0.9995
         assert (far.shadow == near.shadow).mean() > 0.9995
+
+
+# --- Lights and cameras of a glTF file ------------------------------------------------------------
+
+
+def add_view(path: pathlib.Path) -> None:
+    """A camera, 3 by 2, and two lights beside what the file holds, under turned nodes."""
+    document = json.loads(path.read_text())
+    nodes = document["nodes"]
+    # Half a turn about the diagonal between two axes exchanges them: y becomes up.
+    half = 2 ** -0.5
+    nodes += [
+        {"name": "eye", "camera": 0, "translation": [1, -7, 0.5], "rotation": [half, 0, 0, half]},
+        {"name": "lamp", "translation": [-2.5, 1, 5],
+         "extensions": {"KHR_lights_punctual": {"light": 0}}},
+        {"name": "tilted", "rotation": [0.0, numpy.sin(0.3), 0.0, numpy.cos(0.3)],
+         "children": [len(nodes) + 3]},
+        {"name": "sun", "extensions": {"KHR_lights_punctual": {"light": 1}}},
+    ]
+    document["cameras"] = [
+        {"type": "perspective", "perspective": {"yfov": 0.9, "aspectRatio": 1.5, "znear": 0.1}}
+    ]
+    document["extensions"] = {
+        "KHR_lights_punctual": {"lights": [{"type": "spot"}, {"type": "directional"}]}
+    }
+    path.write_text(json.dumps(document))
+
+
+def test_a_gltf_file_brings_its_own_camera_and_lights(
+    tmp_path: pathlib.Path, run_lightfit: Any
+) -> None:
+    pytest.importorskip("lightfit._native")
+    scene = tmp_path / "a.gltf"
+    write_gltf(scene, numpy.zeros(3))
+    add_view(scene)
+    own, given = tmp_path / "own.exr", tmp_path / "given.exr"
+    done = run_lightfit("render", scene, "-o", own)
+    assert done.returncode == 0, done.stderr
+    assert f"camera and lights of {scene}" in done.stdout and "270x180" in done.stdout
+    sun = f"{-numpy.sin(0.6)!r},0,{-numpy.cos(0.6)!r}"
+    done = run_lightfit(
+        "render", scene, "--camera", f"1,-7,0.5:1,0,0.5:{numpy.degrees(0.9)!r}", "--up", "0,0,1",
+        "--size", "270x180", "--light", "lamp=point:-2.5,1,5", "--light", f"sun=sun:{sun}",
+        "-o", given,
+    )
+    assert done.returncode == 0 and "camera and lights of" not in done.stdout
+    first, second = lightfit.read_exr(own, scene_lights(sun)), lightfit.read_exr(given, scene_lights(sun))
+    assert numpy.isclose(first.depth, second.depth, rtol=1e-6).mean() > 0.9995
+    assert (first.shadow == second.shadow).mean() > 0.9995 and (first.shadow > 0).any()
+    # And `fit` takes both from the file, instead of those that it is told.
+    results = []
+    for more in (["--lights", scene], ["--lights", scene, "--camera", f"{scene}:eye"]):
+        out = tmp_path / "fit.json"
+        done = run_lightfit("fit", own, *more, "--json", out, "--quiet")
+        assert done.returncode == 0, done.stderr
+        results.append([
+            light["energies"]["final"] for light in json.loads(out.read_text())["lights"]
+        ])
+    assert len(results[0]) == 2 and numpy.allclose(results[0], results[1], rtol=1e-5)
+
+
+def scene_lights(sun: str) -> List[light_pb2.Light]:
+    direction = [float(number) for number in sun.split(",")]
+    return [
+        light_pb2.Light(name="lamp", position=[-2.5, 1, 5]),
+        light_pb2.Light(name="sun", direction=direction),
+    ]
+
+
+def test_a_gltf_file_of_several_cameras_lists_them(
+    tmp_path: pathlib.Path, run_lightfit: Any
+) -> None:
+    scene = tmp_path / "a.gltf"
+    write_gltf(scene, numpy.zeros(3))
+    add_view(scene)
+    document = json.loads(scene.read_text())
+    document["nodes"].append({"name": "other", "camera": 0})
+    scene.write_text(json.dumps(document))
+    done = run_lightfit("render", scene, "-o", tmp_path / "a.exr")
+    assert done.returncode == 2 and "a.gltf:eye, a.gltf:other" in done.stderr
+    done = run_lightfit("render", scene, "--camera", f"{scene}:eye", "-o", tmp_path / "a.exr")
+    assert done.returncode == 0, done.stderr
+    assert f"lights of {scene}" in done.stdout and "camera and" not in done.stdout
