@@ -14,6 +14,7 @@
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
 #include "base/text_file.h"
+#include "scenes/gltf_view.h"
 #include "wire/light_proto.h"
 #include "wire/proto_json.h"
 #include "wire/utf8.h"
@@ -123,6 +124,10 @@ Struct OnlyWhatCounts(const Struct& object) {
   return counts;
 }
 
+absl::StatusOr<std::string> JsonOf(const std::string& path) {
+  return IsGltf(path) ? GltfLightsJson(path) : ReadTextFile(path);
+}
+
 ListedLight LightOfEntry(const Value& entry, int index) {
   ListedLight listed;
   listed.light.shadow_bit = index;
@@ -188,7 +193,7 @@ absl::StatusOr<std::vector<Light>> ParseLightsJson(absl::string_view json) {
 }
 
 absl::StatusOr<std::vector<ListedLight>> ReadLightList(const std::string& path) {
-  const absl::StatusOr<std::string> json = ReadTextFile(path);
+  const absl::StatusOr<std::string> json = JsonOf(path);
   if (!json.ok()) return json.status();
   absl::StatusOr<std::vector<ListedLight>> lights = ParseLightList(*json);
   if (!lights.ok()) return InFile(path, lights.status());
@@ -196,7 +201,7 @@ absl::StatusOr<std::vector<ListedLight>> ReadLightList(const std::string& path) 
 }
 
 absl::StatusOr<std::vector<Light>> ReadLightsFile(const std::string& path) {
-  const absl::StatusOr<std::string> json = ReadTextFile(path);
+  const absl::StatusOr<std::string> json = JsonOf(path);
   if (!json.ok()) return json.status();
   absl::StatusOr<std::vector<Light>> lights = ParseLightsJson(*json);
   if (!lights.ok()) return InFile(path, lights.status());

@@ -3,6 +3,7 @@
 // Lights from JSON files and from the command line.
 // In:   {"lights": [{"name": "key", "position": [x, y, z]}, ...]}, lightfit.v1.Light in protobuf
 //       JSON (unknown fields are ignored), or "sun=sun:0,0,-1".
+//       Of a .glb or .gltf file its KHR_lights_punctual (scenes/gltf_view.h).
 // Out:  lights with shadow_bit 0, 1, ... in the order of the file, and why some are of no use.
 //
 // Positions are in world units; a direction is the one in which the light travels, of any length.

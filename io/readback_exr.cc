@@ -6,6 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "geometry/affine_depth.h"
+#include "geometry/sized_camera.h"
 #include "io/camera_exr_input.h"
 #include "io/exr_channels.h"
 #include "io/exr_depth.h"
@@ -61,7 +62,9 @@ absl::Status SetCamera(const OpenReadback& open,
   const int part = open.depth.part;
   file.depth_kind = options.depth_kind;
   if (options.camera.has_value()) {
-    file.camera = *options.camera;
+    absl::StatusOr<Camera> sized = SizedCamera(*options.camera, exr.width(part), exr.height(part));
+    if (!sized.ok()) return sized.status();
+    file.camera = *std::move(sized);
     if (file.camera.width != exr.width(part) || file.camera.height != exr.height(part)) {
       return absl::InvalidArgumentError(
           absl::StrFormat("camera: size = %dx%d, but the display window of %s is %dx%d: want the "

@@ -11,7 +11,8 @@
 namespace lightfit::cli {
 
 void DeclareLightFlags(CLI::App* app, LightFlags* flags, const std::string& group) {
-  app->add_option("--lights", flags->path, "JSON file with the lights")
+  app->add_option(
+         "--lights", flags->path, "JSON file with the lights, or a glTF file that has lights")
       ->type_name("FILE")
       ->group(group);
   app->add_option_function<std::vector<std::string>>(

@@ -14,9 +14,11 @@
 #include "absl/strings/str_split.h"
 #include "base/suggest.h"
 #include "geometry/resized_camera.h"
+#include "geometry/sized_camera.h"
 #include "io/camera_file.h"
 #include "render/random_suns.h"
-#include "render/scene_file.h"
+#include "scenes/gltf_view.h"
+#include "scenes/scene_file.h"
 
 namespace lightfit::cli {
 namespace {
@@ -45,7 +47,7 @@ bool IsGenerator(const std::string& text) {
 // A file of that name is a file, whatever else the name could mean.
 bool IsView(const std::string& text) {
   std::error_code error;
-  return absl::StrContains(text, ',') && !std::filesystem::exists(text, error);
+  return absl::StrContains(text, ',') && !IsGltf(text) && !std::filesystem::exists(text, error);
 }
 
 template <typename Parse, typename Target>
@@ -65,7 +67,9 @@ void DeclareCamera(CLI::App* app, SceneFlags* flags) {
            if (IsView(text)) ParseInto("--camera", text, ParseView, &flags->view);
          },
          "Where the eye is, what it looks at and the vertical field of view in degrees [60]; or "
-         "a JSON file with the camera, or a scene file")
+         "a JSON file with the camera, a scene file with its frames, or a glTF file: "
+         "scene.glb:NAME "
+         "for one of several cameras [that of SCENE, if it is a glTF file with one]")
       ->type_name("X,Y,Z:X,Y,Z[:DEG]|FILE")
       ->group(group);
   app->add_option_function<std::string>(
@@ -80,18 +84,25 @@ void DeclareCamera(CLI::App* app, SceneFlags* flags) {
       ->group(group);
 }
 
-absl::StatusOr<Camera> CameraFromFile(const SceneFlags& flags, int width, int height) {
+absl::StatusOr<Camera> CameraFromFile(const SceneFlags& flags,
+                                      const std::string& path,
+                                      int width,
+                                      int height) {
   constexpr double kAspectTolerance = 0.01;  // sizes are rounded to pixels
-  absl::StatusOr<StatedCamera> file = ReadCameraFile(flags.camera, flags.frame);
+  absl::StatusOr<StatedCamera> file = ReadCameraFile(path, flags.frame);
   if (!file.ok()) return file.status();
-  const Camera& camera = file->camera;
+  const absl::StatusOr<Camera> sized = SizedCamera(file->camera, width, height);
+  if (!sized.ok()) {
+    return absl::InvalidArgumentError(absl::StrCat(path, ": ", sized.status().message()));
+  }
+  const Camera& camera = *sized;
   const double scale_x = static_cast<double>(width) / camera.width;
   const double scale_y = static_cast<double>(height) / camera.height;
   if (!(std::abs(scale_x / scale_y - 1.0) <= kAspectTolerance)) {
     return absl::InvalidArgumentError(absl::StrFormat(
         "--camera %s: its image is %dx%d, %dx%d is asked for: want the same ratio of width to "
         "height, such as %dx%d",
-        flags.camera,
+        path,
         camera.width,
         camera.height,
         width,
@@ -151,12 +162,24 @@ absl::StatusOr<LoadedScene> LoadScene(const SceneFlags& flags) {
   return LoadedScene{*std::move(caster), title, num_dropped};
 }
 
+std::string CameraPath(const SceneFlags& flags) {
+  const bool is_of_scene =
+      flags.camera.empty() && IsGltf(flags.scene) && !ContentsOf(flags.scene).cameras.empty();
+  return is_of_scene ? flags.scene : flags.camera;
+}
+
+bool TakesLightsOfScene(const SceneFlags& flags) {
+  return flags.lights.path.empty() && flags.lights.extra.empty() && flags.num_random_lights == 0 &&
+         IsGltf(flags.scene) && ContentsOf(flags.scene).num_lights > 0;
+}
+
 absl::StatusOr<Camera> MakeViewCamera(const SceneFlags& flags, int width, int height) {
-  if (flags.camera.empty()) {
+  const std::string path = CameraPath(flags);
+  if (path.empty()) {
     return absl::InvalidArgumentError(
         "no camera: want --camera EYE:TARGET such as --camera 0,1.7,18:0,0.5,0, or --camera FILE");
   }
-  if (!flags.view.has_value()) return CameraFromFile(flags, width, height);
+  if (!flags.view.has_value()) return CameraFromFile(flags, path, width, height);
   const ViewFlags& view = *flags.view;
   const Eigen::Vector3d forward = view.target - view.eye;
   if (!(forward.norm() > 0.0)) {
@@ -182,7 +205,9 @@ absl::StatusOr<Camera> MakeViewCamera(const SceneFlags& flags, int width, int he
 }
 
 absl::StatusOr<std::vector<Light>> SceneLights(const SceneFlags& flags) {
-  absl::StatusOr<std::vector<Light>> lights = ReadLights(flags.lights);
+  LightFlags given = flags.lights;
+  if (TakesLightsOfScene(flags)) given.path = flags.scene;
+  absl::StatusOr<std::vector<Light>> lights = ReadLights(given);
   if (!lights.ok()) return lights.status();
   if (flags.num_random_lights > 0) {
     if (!(flags.up.norm() > 0.0)) {

@@ -1,6 +1,6 @@
-// render/scene_file.h
+// scenes/scene_file.h
 //
-// Scenes from files: glTF (.gltf, .glb) and Wavefront (.obj) by assimp, Stanford (.ply).
+// Scenes from files: glTF 2.0 (.gltf, .glb), Wavefront (.obj), Stanford (.ply).
 // In:   a path.
 // Out:  Scene in world space: all meshes of the file under their nodes' transforms.
 #pragma once
@@ -9,7 +9,7 @@
 #include <string>
 
 #include "absl/status/statusor.h"
-#include "render/scene.h"
+#include "scenes/scene.h"
 
 namespace lightfit {
 

@@ -1,4 +1,4 @@
-#include "render/scene_file.h"
+#include "scenes/scene_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,6 +18,7 @@ namespace lightfit {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using testing::IsOk;
 using testing::StatusIs;
@@ -158,6 +159,74 @@ TEST_F(SceneFileTest, ReadsBinaryPlyOfBothEnds) {
     ExpectBounds(file->scene, {-1, 2, 3}, {5, 8, 4});
     ply.pop_back();
     EXPECT_THAT(ReadScene(Write("a.ply", ply)), StatusIs(kInvalid, HasSubstr("face 1 of 1")));
+  }
+}
+
+// The header knows of x, y and z; each line has a colour too, and a face its own.
+TEST_F(SceneFileTest, LeavesOutWhatPlyLinesHaveBeyondTheHeader) {
+  const auto file = ReadScene(Write("a.ply",
+                                    "ply\nformat ascii 1.0\n"
+                                    "element vertex 4\nproperty float x\nproperty float y\n"
+                                    "property float z\nelement face 2\n"
+                                    "property list uchar int vertex_indices\nend_header\n"
+                                    "0 0 0 255 0 0\r\n1 0 0 0 255 0\n\n0 1 0 1 2 3 4 5\n0 0 -7\n"
+                                    "3 0 1 2 9 9 9\n3 0 1 3 9 9 9"));
+  ASSERT_THAT(file, IsOk());
+  EXPECT_THAT(file->scene.triangles,
+              ElementsAre(Eigen::Vector3i(0, 1, 2), Eigen::Vector3i(0, 1, 3)));
+  ExpectBounds(file->scene, {0, 0, -7}, {1, 1, 0});
+}
+
+// -1 ends a strip, every other triangle of one is turned, and a repeated corner is none.
+TEST_F(SceneFileTest, ReadsPlyStrips) {
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\n"
+      "property float z\nelement tristrips 1\n";
+  const std::string vertices = "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n1 2 1\n";
+  for (const char* list : {"property list int int vertex_indices\nend_header\n",
+                           "property list uchar int vertex_index\nend_header\n",
+                           "property list int int indices\nend_header\n"}) {
+    const auto file =
+        ReadScene(Write("a.ply", header + list + vertices + "13 0 1 2 3 -1 2 3 4 4 5 -1 0 1\n"));
+    ASSERT_THAT(file, IsOk());
+    EXPECT_THAT(
+        file->scene.triangles,
+        ElementsAre(Eigen::Vector3i(0, 1, 2), Eigen::Vector3i(2, 1, 3), Eigen::Vector3i(2, 3, 4)));
+    EXPECT_EQ(file->num_dropped, 0);
+  }
+  EXPECT_THAT(ReadScene(Write("a.ply", header + "property int a\nend_header\n" + vertices + "7\n")),
+              StatusIs(kInvalid, HasSubstr("no list vertex_indices")));
+}
+
+TEST_F(SceneFileTest, ReadsPlyFacesThatStandBeforeTheirVertices) {
+  const auto file = ReadScene(Write("a.ply",
+                                    "ply\nformat ascii 1.0\nelement face 1\n"
+                                    "property list uchar int vertex_indices\n"
+                                    "element vertex 5\nproperty double x\nproperty double y\n"
+                                    "property double z\nend_header\n5 0 1 2 3 4\n"
+                                    "0 0 0\n4 0 0\n4 4 0\n2 1 0\n0 4 0\n"));
+  ASSERT_THAT(file, IsOk());
+  EXPECT_EQ(file->scene.triangles.size(), 3u);
+}
+
+// Editors and shells of Windows.
+TEST_F(SceneFileTest, ReadsTextWithMarksAndOfSixteenBits) {
+  const std::string mark = "\xEF\xBB\xBF";
+  Write("a.bin", GltfBuffer());
+  for (const auto& [name, text] : {std::pair<std::string, std::string>{"a.obj", kObj},
+                                   {"a.ply", kPly},
+                                   {"a.gltf", GltfJson("\"uri\": \"a.bin\", ")}}) {
+    SCOPED_TRACE(name);
+    std::string wide = "\xFF\xFE";
+    for (const char c : text) wide += std::string{c, '\0'};
+    const auto plain = ReadScene(Write(name, text));
+    ASSERT_THAT(plain, IsOk());
+    for (const std::string& bytes : {mark + text, wide}) {
+      const auto file = ReadScene(Write(name, bytes));
+      ASSERT_THAT(file, IsOk());
+      EXPECT_EQ(file->scene.vertices, plain->scene.vertices);
+      EXPECT_EQ(file->scene.triangles, plain->scene.triangles);
+    }
   }
 }
 

@@ -1,4 +1,4 @@
-#include "render/ply_file.h"
+#include "scenes/ply_file.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -13,6 +13,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
+#include "absl/types/span.h"
+#include "scenes/triangulate.h"
 
 namespace lightfit {
 
@@ -180,6 +182,13 @@ class Body {
     return true;
   }
 
+  // In text an entry is a line: what else stands on it is left out.
+  void EndEntry() {
+    if (format_ != Format::kText) return;
+    const size_t end = bytes_.find('\n');
+    bytes_.remove_prefix(end == absl::string_view::npos ? bytes_.size() : end);
+  }
+
  private:
   bool NextWord(double* value) {
     size_t begin = 0;
@@ -195,20 +204,66 @@ class Body {
   Format format_;
 };
 
-void AppendFan(const std::vector<double>& corners, Scene* scene) {
-  // What is no index stays none as an integer.
-  const auto index = [](double value) {
-    return value >= 0.0 && value < 2147483647.0 ? static_cast<int>(value) : -1;
-  };
-  for (size_t i = 2; i < corners.size(); ++i) {
-    scene->triangles.emplace_back(index(corners[0]), index(corners[i - 1]), index(corners[i]));
+// What the body of a file holds.
+struct Content {
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<Eigen::Vector3i> triangles;
+  // Polygons, one after the other: where each ends among `corners`. Vertices may stand behind them.
+  std::vector<int> corners;
+  std::vector<int64_t> ends;
+};
+
+// What is no index stays none as an integer.
+int IndexOf(double value) {
+  return value >= 0.0 && value < 2147483647.0 ? static_cast<int>(value) : -1;
+}
+
+// Strips of triangles, each of three neighbours in the list; -1 ends a strip.
+void AppendStrips(const std::vector<double>& list, std::vector<Eigen::Vector3i>* triangles) {
+  constexpr double kUnsignedEnd = 4294967295.0;  // -1 in a list of uint
+  size_t begin = 0;
+  for (size_t i = 0; i < list.size(); ++i) {
+    if (list[i] < 0.0 || list[i] == kUnsignedEnd) {
+      begin = i + 1;
+    } else if (i >= begin + 2) {
+      const int a = IndexOf(list[i - 2]), b = IndexOf(list[i - 1]), c = IndexOf(list[i]);
+      // A repeated corner turns the strip around a fold; it is no bad triangle of the file.
+      if (a == b || b == c || c == a) continue;
+      if ((i - begin) % 2 == 0) {
+        triangles->emplace_back(a, b, c);
+      } else {
+        triangles->emplace_back(b, a, c);
+      }
+    }
   }
 }
 
-// Reads one entry of an element into the scene; false when the file ends within.
-bool ReadEntry(const Element& element, Body* body, std::vector<double>* list, Scene* scene) {
-  const bool is_vertex = element.name == "vertex", is_face = element.name == "face";
-  Eigen::Vector3f vertex = Eigen::Vector3f::Zero();
+void AppendPolygon(const std::vector<double>& list, Content* content) {
+  for (const double value : list) content->corners.push_back(IndexOf(value));
+  content->ends.push_back(static_cast<int64_t>(content->corners.size()));
+}
+
+// The list of a face's corners: by its name, or as the only list that there is.
+const Property* CornersOf(const Element& element) {
+  const Property* only = nullptr;
+  int num_lists = 0;
+  for (const Property& property : element.properties) {
+    if (!property.is_list) continue;
+    if (property.name == "vertex_indices" || property.name == "vertex_index") return &property;
+    only = &property;
+    ++num_lists;
+  }
+  return num_lists == 1 ? only : nullptr;
+}
+
+// Reads one entry of an element; false when the file ends within.
+bool ReadEntry(const Element& element,
+               const Property* corners,
+               Body* body,
+               std::vector<double>* list,
+               Content* content) {
+  const bool is_vertex = element.name == "vertex";
+  Eigen::Vector3d vertex = Eigen::Vector3d::Zero();
   for (const Property& property : element.properties) {
     double value = 0.0;
     if (property.is_list) {
@@ -218,18 +273,39 @@ bool ReadEntry(const Element& element, Body* body, std::vector<double>* list, Sc
       for (double& item : *list) {
         if (!body->Next(property.type, &item)) return false;
       }
-      if (is_face && (property.name == "vertex_indices" || property.name == "vertex_index")) {
-        AppendFan(*list, scene);
+      if (&property != corners) continue;
+      if (element.name == "face") {
+        AppendPolygon(*list, content);
+      } else {
+        AppendStrips(*list, &content->triangles);
       }
       continue;
     }
     if (!body->Next(property.type, &value)) return false;
     if (!is_vertex || property.name.size() != 1) continue;
     const int axis = property.name[0] - 'x';
-    if (axis >= 0 && axis < 3) vertex[axis] = static_cast<float>(value);
+    if (axis >= 0 && axis < 3) vertex[axis] = value;
   }
-  if (is_vertex) scene->vertices.push_back(vertex);
+  if (is_vertex) content->vertices.push_back(vertex);
+  body->EndEntry();
   return true;
+}
+
+// The content as a scene, polygons cut into triangles.
+absl::StatusOr<Scene> SceneOf(Content content) {
+  Triangulator triangulator(content.vertices);
+  int64_t begin = 0;
+  for (const int64_t end : content.ends) {
+    if (!triangulator.Append(absl::MakeConstSpan(content.corners).subspan(begin, end - begin),
+                             &content.triangles)) {
+      return absl::InvalidArgumentError(absl::StrFormat(
+          "has a polygon of %d corners that is too tangled to be cut into triangles "
+          "in reasonable time: write it with triangles",
+          end - begin));
+    }
+    begin = end;
+  }
+  return MakeScene(content.vertices, std::move(content.triangles));
 }
 
 }  // namespace
@@ -237,13 +313,19 @@ bool ReadEntry(const Element& element, Body* body, std::vector<double>* list, Sc
 absl::StatusOr<Scene> ParsePly(absl::string_view bytes) {
   const absl::StatusOr<Header> header = TakeHeader(&bytes);
   if (!header.ok()) return header.status();
-  Scene scene;
+  Content content;
   Body body(bytes, header->format);
   std::vector<double> list;
   for (const Element& element : header->elements) {
     if (element.properties.empty()) continue;
+    const bool has_corners = element.name == "face" || element.name == "tristrips";
+    const Property* corners = has_corners ? CornersOf(element) : nullptr;
+    if (has_corners && corners == nullptr) {
+      return absl::InvalidArgumentError(
+          absl::StrFormat("its element %s has no list vertex_indices", element.name));
+    }
     for (int64_t i = 0; i < element.count; ++i) {
-      if (!ReadEntry(element, &body, &list, &scene)) {
+      if (!ReadEntry(element, corners, &body, &list, &content)) {
         return absl::InvalidArgumentError(
             absl::StrFormat("%s %d of %d cannot be read; the file is damaged or cut short",
                             absl::CHexEscape(element.name.substr(0, 40)),
@@ -252,7 +334,7 @@ absl::StatusOr<Scene> ParsePly(absl::string_view bytes) {
       }
     }
   }
-  return scene;
+  return SceneOf(std::move(content));
 }
 
 }  // namespace lightfit
