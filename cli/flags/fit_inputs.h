@@ -11,6 +11,7 @@
 #include "geometry/light.h"
 #include "io/fine_cover_exr.h"
 #include "io/readback_exr.h"
+#include "io/readback_notes.h"
 
 namespace lightfit::cli {
 
@@ -18,6 +19,9 @@ struct FitInputs {
   std::vector<Light>
       lights;         // those of --lights, then those of --light, as far as --only keeps them
   ReadbackFile file;  // light_status[l] belongs to lights[l]
+
+  // What is to be said of it.
+  ReadbackNotes notes;
 
   // --cover-readback.
   std::optional<FineCoverFile> fine_cover_file;

@@ -28,6 +28,7 @@ from lightfit.errors import (
     FailedPreconditionError,
     InvalidArgumentError,
     LightfitError,
+    LightfitWarning,
     TooLargeError,
     UnavailableError,
 )
@@ -93,6 +94,7 @@ __all__ = [
     "Light",
     "LightResult",
     "LightfitError",
+    "LightfitWarning",
     "Local",
     "MapSizeRules",
     "Plan",

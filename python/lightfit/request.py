@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 import os
 from pathlib import Path
 from typing import Any, Dict, Iterable, Mapping, Optional, Sequence, Tuple, Union
@@ -61,6 +62,7 @@ def readback_parts(
     facing: Any = None,
     mapped: Any = None,
     cover: Optional[FineCover] = None,
+    background: Optional[float] = None,
 ) -> ReadbackParts:
     messages = light_messages(lights)
     pixels = check_pixels(depth, shadow, len(messages), facing, mapped)
@@ -68,7 +70,22 @@ def readback_parts(
     header = pixels.header()
     header.camera.CopyFrom(camera_message(camera, pixels.width, pixels.height))
     header.source = source
+    if background is not None:
+        header.background = _depth_of(background)
     return ReadbackParts(header, messages, pixels)
+
+
+def _depth_of(background: Any) -> float:
+    try:
+        depth = float(background)
+    except (TypeError, ValueError):
+        depth = math.nan
+    if not depth > 0:
+        raise InvalidArgumentError(
+            f"background = {background!r}, want the depth at and beyond which nothing was hit, or "
+            "math.inf"
+        )
+    return depth
 
 
 def fit_request(
