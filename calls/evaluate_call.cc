@@ -12,6 +12,7 @@
 #include "base/stop.h"
 #include "base/text_file.h"
 #include "calls/candidate_matrix.h"
+#include "calls/checked_readback.h"
 #include "calls/message_text.h"
 #include "calls/pixel_buffer.h"
 #include "calls/request_fields.h"
@@ -141,8 +142,9 @@ absl::StatusOr<v1::EvaluateResult> AnswerEvaluate(const v1::EvaluateRequest& req
   for (const RequestLight& light : *lights) {
     if (light.status.ok()) usable.push_back(light.light);
   }
+  const CheckedReadback checked = CheckReadback(readback->view(), *lights);
   const absl::StatusOr<Surfaces> surfaces =
-      FindSurfaces(readback->view(), LightMask(usable), options->samples);
+      FindSurfaces(checked.readback, LightMask(usable), options->samples);
 
   v1::EvaluateResult result;
   for (int i = 0; i < request.matrices_size(); ++i) {
@@ -160,6 +162,7 @@ absl::StatusOr<v1::EvaluateResult> AnswerEvaluate(const v1::EvaluateRequest& req
   result.mutable_readback()->set_source(request.readback().source());
   const Readback& view = readback->view();
   *result.mutable_readback()->mutable_camera() = CameraToProto(view.camera, view.depth_kind);
+  checked.PutInto(result.mutable_readback());
   *result.mutable_options() = FitOptionsToProto(*options);
   if (absl::Status status = CheckFinite(result, "result"); !status.ok()) return status;
   return result;

@@ -56,8 +56,9 @@ std::string SourceLine(const AllocateFlags& flags, const AllocateInputs& inputs)
                            num_frames,
                            num_frames == 1 ? "frame" : "frames");
   }
-  return absl::StrFormat("%s: %d x %d pixels, final image %s times as wide",
+  return absl::StrFormat("%s (%s): %d x %d pixels, final image %s times as wide",
                          flags.fit.readback_path,
+                         inputs.notes.OriginText(),
                          inputs.readback->camera.width,
                          inputs.readback->camera.height,
                          FigureText(inputs.image_scale));
@@ -125,6 +126,8 @@ int RunAllocate(const AllocateFlags& flags) {
     status = ValidateSharedBudget(num_lights, *plans, "--budget");
     if (!status.ok()) return Fail(kExitUsage, status);
   }
+
+  PrintWarnings(inputs->notes.Warnings());
 
   const absl::StatusOr<AllocationReport> report = Allocate(flags, inputs->task);
   if (!report.ok()) return Fail(kExitBadInput, report.status());

@@ -68,7 +68,10 @@ absl::Status ReadReadbackInputs(const CompareFlags& flags, CompareInputs* inputs
   absl::StatusOr<FitInputs> readback = ReadFitInputs(ReadbackFlags(flags));
   if (!readback.ok()) return readback.status();
   inputs->readback = std::make_unique<FitInputs>(*std::move(readback));
-  inputs->title = flags.scene.scene;
+  inputs->title = absl::StrCat(flags.scene.scene, " (", inputs->readback->notes.OriginText(), ")");
+  for (std::string& warning : inputs->readback->notes.Warnings()) {
+    inputs->warnings.push_back(std::move(warning));
+  }
   inputs->lights = inputs->readback->lights;
   inputs->light_status = inputs->readback->file.light_status;
   absl::StatusOr<CompareStage> stage = MakeStage(inputs->readback->file.View());
@@ -137,6 +140,9 @@ absl::StatusOr<CompareStage> NextReadbackStage(const CompareFlags& flags, Compar
   if (!readback.ok()) return readback.status();
   inputs->next_readback = std::make_unique<FitInputs>(*std::move(readback));
   inputs->next_title = flags.crawl.next_readback_path;
+  for (std::string& warning : inputs->next_readback->notes.Warnings()) {
+    inputs->warnings.push_back(std::move(warning));
+  }
   return MakeStage(inputs->next_readback->file.View());
 }
 

@@ -43,6 +43,10 @@ void PrintWarning(absl::string_view message) {
   std::fprintf(stderr, "lightfit: warning: %s\n", WithFlags(message).c_str());
 }
 
+void PrintWarnings(const std::vector<std::string>& messages) {
+  for (const std::string& message : messages) PrintWarning(message);
+}
+
 int Fail(ExitCode code, const absl::Status& status) {
   PrintError(status.message());
   return code;

@@ -3,6 +3,9 @@
 // What a verb tells the shell, and how it speaks on stderr.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "absl/status/status.h"
 #include "absl/strings/string_view.h"
 
@@ -19,6 +22,8 @@ enum ExitCode {
 // the flag is what is said.
 void PrintError(absl::string_view message);
 void PrintWarning(absl::string_view message);
+
+void PrintWarnings(const std::vector<std::string>& messages);
 
 // The error on stderr; returns `code`.
 int Fail(ExitCode code, const absl::Status& status);

@@ -21,6 +21,7 @@
 #include "cli/reports/legend.h"
 #include "cli/reports/plan_report.h"
 #include "io/image_exr_write.h"
+#include "io/readback_notes.h"
 #include "jobs/fit_comparison.h"
 #include "jobs/fit_images.h"
 #include "picture/fit_page.h"
@@ -196,7 +197,7 @@ absl::Status WriteOutputs(const FitFlags& flags,
   if (!flags.json_path.empty()) {
     const FitReport report = JsonReport(flags, options, file, outcome.comparisons);
     v1::FitResult result = FitResultToProto(report);
-    *result.mutable_readback()->mutable_origin() = OriginToProto(file.origin);
+    PutNotes(file, result.mutable_readback());
     absl::Status status = WriteFitResultJson(flags.json_path, result);
     if (!status.ok()) return status;
   }
@@ -260,6 +261,7 @@ int RunFit(const FitFlags& flags) {
     std::fputs(text.c_str(), stdout);
     std::fflush(stdout);
   }
+  PrintWarnings(inputs->notes.Warnings());
   WarnAboutPixels(outcome.comparisons);
   PrintNotes(outcome.comparisons, options);
   const int num_failed = PrintFailedLights(outcome.comparisons, plan.has_value());

@@ -15,7 +15,7 @@ std::vector<ReceiverRole> RolesOfReceivers(const Surfaces& surfaces,
                                            Border border,
                                            const std::vector<uint8_t>& samples) {
   const Readback& readback = surfaces.readback;
-  const AffineDepth depth(readback.camera, readback.depth_kind);
+  const AffineDepth depth = AffineDepthOf(readback);
   const NeededSurfaces needed(surfaces, light, border);
   std::vector<ReceiverRole> roles;
   for (size_t pixel = 0; pixel < samples.size(); ++pixel) {

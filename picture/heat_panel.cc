@@ -91,7 +91,7 @@ Image DrawHeatPanel(const Readback& readback,
                     absl::Span<const uint8_t> samples,
                     const LogScale& scale) {
   const int width = readback.width();
-  const AffineDepth depth(readback.camera, readback.depth_kind);
+  const AffineDepth depth = AffineDepthOf(readback);
   Image image(width, readback.height(), kPanelColor);
   for (size_t pixel = 0; pixel < footprints.size(); ++pixel) {
     if (!depth.IsSurface(readback.depth[pixel])) continue;
@@ -106,7 +106,7 @@ Image DrawScreenPanel(const Readback& readback,
                       Image image,
                       absl::Span<const uint8_t> samples) {
   const int width = readback.width();
-  const AffineDepth depth(readback.camera, readback.depth_kind);
+  const AffineDepth depth = AffineDepthOf(readback);
   const float shadow_share = ShadowShareOf(readback, light, depth);
   for (size_t pixel = 0; pixel < samples.size(); ++pixel) {
     if (!depth.IsSurface(readback.depth[pixel]) || !IsShadowed(readback, light, pixel)) continue;

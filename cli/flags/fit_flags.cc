@@ -148,6 +148,13 @@ void DeclareReadbackFlags(CLI::App* app, const std::string& group, FitFlags* fla
             &flags->depth_kind,
             "What the depth channel holds [camera-z, or as the camera file says]")
       ->group(group);
+  app->add_option("--background",
+                  flags->background,
+                  "Pixels at this depth or beyond are background; inf: none before 1e9 [one "
+                  "greatest depth that many pixels share, far beyond the rest]")
+      ->type_name("DEPTH")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
   app->add_option("--depth-channel",
                   flags->depth_channel,
                   "Name of the depth channel, CHANNEL or PART.CHANNEL [Z, or what is called depth]")
@@ -218,7 +225,7 @@ void DeclareCameraExrFlags(CLI::App* app, const std::string& group, CameraExrOpt
            camera->convention = *convention;
          },
          "Who wrote worldToCamera and worldToNDC: openexr, mantra or pbrt; words such as "
-         "column-vectors,y-up change it [openexr]")
+         "column-vectors,y-up change it; shifted: the lens is [openexr]")
       ->type_name("WORDS")
       ->group(group);
   app->add_option("--near", camera->near, "Near clip plane, world units (NDC depth only)")

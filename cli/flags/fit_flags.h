@@ -37,6 +37,7 @@ struct FitFlags {
   ClipConvention clip = ClipConvention::Vulkan();
 
   std::optional<DepthKind> depth_kind;  // absent: the camera file's, or kCameraZ
+  std::optional<float> background;      // absent: looked for
   std::string depth_channel;
   std::string view;  // of a stereo file
   std::string shadow_channel_format;

@@ -13,6 +13,18 @@
 #include "optimizer/readback/readback.h"
 
 namespace lightfit::cli {
+namespace {
+
+// The depth kind may be the camera file's.
+absl::StatusOr<ReadbackExrOptions> WithBackgroundChecked(const ReadbackExrOptions& options) {
+  if (!options.background.has_value() || !IsNdc(options.depth_kind)) return options;
+  return absl::InvalidArgumentError(
+      absl::StrCat("--background: is for depths that are distances, and these are ",
+                   DepthKindName(options.depth_kind),
+                   ", whose background is the far plane: leave it out"));
+}
+
+}  // namespace
 
 namespace {
 
@@ -135,6 +147,7 @@ absl::StatusOr<std::vector<Light>> ReadFitLights(const FitFlags& flags) {
 absl::StatusOr<ReadbackExrOptions> ReadbackOptionsOf(const FitFlags& flags) {
   ReadbackExrOptions options;
   options.depth_kind = flags.depth_kind.value_or(DepthKind::kCameraZ);
+  options.background = flags.background;
   options.depth_channel = flags.depth_channel;
   options.view = flags.view;
   if (!flags.shadow_channel_format.empty()) {
@@ -148,14 +161,14 @@ absl::StatusOr<ReadbackExrOptions> ReadbackOptionsOf(const FitFlags& flags) {
     options.mapped_channel_format = flags.mapped_channel_format;
   }
   options.camera_exr = flags.camera_exr;
-  if (flags.camera_path.empty()) return options;
+  if (flags.camera_path.empty()) return WithBackgroundChecked(options);
   absl::StatusOr<StatedCamera> file = ReadCameraFile(flags.camera_path, flags.frame);
   if (!file.ok()) return file.status();
   if (!flags.depth_kind.has_value() && file->depth_kind.has_value()) {
     options.depth_kind = *file->depth_kind;
   }
   options.camera = file->camera;
-  return options;
+  return WithBackgroundChecked(options);
 }
 
 Readback FitInputs::View() const {
@@ -188,6 +201,7 @@ absl::StatusOr<FitInputs> ReadFitInputs(const FitFlags& flags, std::vector<Liste
   absl::StatusOr<ReadbackFile> file = ReadReadbackExr(flags.readback_path, usable, *options);
   if (!file.ok()) return file.status();
   inputs.file = *std::move(file);
+  inputs.notes.Add(0, flags.readback_path, inputs.file);
   if (!flags.cover_readback_path.empty()) {
     absl::StatusOr<FineCoverFile> fine =
         ReadFineCoverExr(flags.cover_readback_path, usable, *options, inputs.file);

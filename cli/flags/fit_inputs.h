@@ -12,6 +12,7 @@
 #include "io/fine_cover_exr.h"
 #include "io/lights_file.h"
 #include "io/readback_exr.h"
+#include "io/readback_notes.h"
 
 namespace lightfit::cli {
 
@@ -19,6 +20,9 @@ struct FitInputs {
   std::vector<Light>
       lights;         // those of --lights, then those of --light, as far as --only keeps them
   ReadbackFile file;  // light_status[l] belongs to lights[l], also of what can be no light
+
+  // What is to be said of it.
+  ReadbackNotes notes;
 
   // --cover-readback.
   std::optional<FineCoverFile> fine_cover_file;
