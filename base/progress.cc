@@ -8,6 +8,7 @@
 #include <cstdio>
 
 #include "absl/strings/str_format.h"
+#include "base/verbose.h"
 
 namespace lightfit {
 namespace {
@@ -28,15 +29,25 @@ std::string DurationText(double seconds) {
 }
 
 Progress::Progress(int num_steps, bool quiet)
-    : num_steps_(std::max(num_steps, 1)), enabled_(!quiet && isatty(STDERR_FILENO) == 1) {}
+    : num_steps_(std::max(num_steps, 1)),
+      enabled_(!quiet && isatty(STDERR_FILENO) == 1 && !IsVerbose()) {}
 
 Progress::~Progress() {
+  SayStep();
   if (shown_) std::fputs("\r\033[K", stderr);
 }
 
 void Progress::Begin(const std::string& what) {
+  SayStep();
+  begin_ = Clock::now();
   what_ = what;
   Show();
+}
+
+void Progress::SayStep() const {
+  if (what_.empty() || !IsVerbose()) return;
+  const std::chrono::duration<double> taken = Clock::now() - begin_;
+  Say(absl::StrFormat("%s: %.3f s", what_, taken.count()));
 }
 
 void Progress::Advance() {

@@ -30,10 +30,14 @@ class Progress {
  private:
   void Show();
 
+  // How long took what was begun last, where that is wanted (base/verbose.h).
+  void SayStep() const;
+
   using Clock = std::chrono::steady_clock;
   const int num_steps_;
   const bool enabled_;
   const Clock::time_point start_ = Clock::now();
+  Clock::time_point begin_ = start_;
   int num_done_ = 0;
   bool shown_ = false;
   std::string what_;

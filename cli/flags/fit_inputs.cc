@@ -7,6 +7,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "base/suggest.h"
+#include "base/verbose.h"
+#include "cli/command_line/standard_streams.h"
 #include "io/camera_file.h"
 #include "optimizer/readback/readback.h"
 
@@ -70,6 +72,31 @@ absl::StatusOr<ReadbackExrOptions> ReadbackOptionsOf(const FitFlags& flags) {
   return options;
 }
 
+namespace {
+
+void SayWhatIsRead(const FitFlags& flags, const FitInputs& inputs) {
+  if (!IsVerbose()) return;
+  const Camera& camera = inputs.file.camera;
+  Say(absl::StrCat("read ",
+                   WithStreamNames(flags.readback_path),
+                   " (",
+                   OriginText(inputs.file.origin),
+                   "): ",
+                   camera.width,
+                   "x",
+                   camera.height,
+                   " pixels"));
+  for (size_t i = 0; i < inputs.lights.size(); ++i) {
+    const absl::Status& status = inputs.file.light_status[i];
+    Say(absl::StrCat("light \"",
+                     inputs.lights[i].name,
+                     "\": ",
+                     status.ok() ? "its shadows are there" : std::string(status.message())));
+  }
+}
+
+}  // namespace
+
 Readback FitInputs::View() const {
   Readback view = file.View();
   if (fine_cover_file.has_value()) view.fine_cover = &fine_cover;
@@ -93,6 +120,7 @@ absl::StatusOr<FitInputs> ReadFitInputs(const FitFlags& flags) {
     inputs.fine_cover_file = *std::move(fine);
     inputs.fine_cover = inputs.fine_cover_file->View();
   }
+  SayWhatIsRead(flags, inputs);
   absl::Status status = ValidateReadback(inputs.View());
   if (!status.ok()) return status;
   return inputs;
