@@ -10,6 +10,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "base/verbose.h"
 
 namespace lightfit {
 namespace {
@@ -58,11 +59,12 @@ ProgressOutput ProgressOutput::Stderr() {
 Progress::Progress(int num_steps, bool quiet, ProgressOutput output)
     : num_steps_(std::max(num_steps, 1)),
       output_(std::move(output)),
-      has_bar_(!quiet && output_.is_terminal) {
+      has_bar_(!quiet && output_.is_terminal && !IsVerbose()) {
   if (!quiet && !output_.is_terminal) lines_ = std::thread([this] { WriteLines(); });
 }
 
 Progress::~Progress() {
+  SayStep();
   if (lines_.joinable()) {
     {
       const std::lock_guard<std::mutex> lock(mutex_);
@@ -75,9 +77,17 @@ Progress::~Progress() {
 }
 
 void Progress::Begin(const std::string& what) {
+  SayStep();
+  begin_ = Clock::now();
   const std::lock_guard<std::mutex> lock(mutex_);
   what_ = what;
   ShowBar();
+}
+
+void Progress::SayStep() const {
+  if (what_.empty() || !IsVerbose()) return;
+  const std::chrono::duration<double> taken = Clock::now() - begin_;
+  Say(absl::StrFormat("%s: %.3f s", what_, taken.count()));
 }
 
 void Progress::Advance() {

@@ -52,11 +52,15 @@ class Progress {
   void ShowBar();
   void WriteLines();  // until the object goes
 
+  // How long took what was begun last, where that is wanted (base/verbose.h).
+  void SayStep() const;
+
   using Clock = std::chrono::steady_clock;
   const int num_steps_;
   const ProgressOutput output_;
   const bool has_bar_;
   const Clock::time_point start_ = Clock::now();
+  Clock::time_point begin_ = start_;
 
   std::mutex mutex_;  // of what follows
   int num_done_ = 0;

@@ -1,6 +1,7 @@
 #include "cli/allocate.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -12,6 +13,7 @@
 #include "base/output_file.h"
 #include "base/progress.h"
 #include "cli/allocate_inputs.h"
+#include "cli/command_line/standard_streams.h"
 #include "cli/exit_code.h"
 #include "cli/reports/allocate_report.h"
 #include "cli/reports/legend.h"
@@ -42,8 +44,8 @@ absl::StatusOr<AllocationReport> Allocate(const AllocateFlags& flags, const Allo
         progress.Begin(what);
       });
   if (!report.ok()) return report;
-  report->fit.source =
-      task.readback.has_value() ? flags.fit.readback_path : SourceText(flags.fit.summary_paths);
+  report->fit.source = task.readback.has_value() ? WithStreamNames(flags.fit.readback_path)
+                                                 : SourceText(flags.fit.summary_paths);
   report->fit.clip = flags.fit.clip;
   return report;
 }
@@ -57,7 +59,7 @@ std::string SourceLine(const AllocateFlags& flags, const AllocateInputs& inputs)
                            num_frames == 1 ? "frame" : "frames");
   }
   return absl::StrFormat("%s (%s): %d x %d pixels, final image %s times as wide",
-                         flags.fit.readback_path,
+                         WithStreamNames(flags.fit.readback_path),
                          inputs.notes.OriginText(),
                          inputs.readback->camera.width,
                          inputs.readback->camera.height,
@@ -145,7 +147,11 @@ int RunAllocate(const AllocateFlags& flags) {
         WriteAllocationJson(flags.fit.json_path, AllocationMessage(*report, summaries.has_value()));
     if (!status.ok()) return Fail(kExitBadInput, status);
   }
-  return num_failed > 0 ? kExitIncomplete : kExitOk;
+  // A map that misses the tolerance is a map.
+  const bool has_map = std::any_of(report->fit.lights.begin(),
+                                   report->fit.lights.end(),
+                                   [](const LightFit& light) { return light.matrix.ok(); });
+  return has_map ? CodeFor(num_failed, num_failed + 1) : kExitBadInput;
 }
 
 }  // namespace lightfit::cli

@@ -12,6 +12,7 @@
 #include "base/output_file.h"
 #include "base/progress.h"
 #include "base/text_file.h"
+#include "cli/command_line/standard_streams.h"
 #include "cli/compare_inputs.h"
 #include "cli/exit_code.h"
 #include "cli/reports/compare_csv.h"
@@ -171,7 +172,8 @@ absl::Status WriteOutputs(const CompareFlags& flags,
   if (!flags.json_path.empty()) {
     status.Update(WriteComparisonJson(
         flags.json_path,
-        ComparisonToProto(flags.scene.scene, inputs.stage, inputs.options, comparisons)));
+        ComparisonToProto(
+            WithStreamNames(flags.scene.scene), inputs.stage, inputs.options, comparisons)));
   }
   if (!flags.picture_path.empty()) status.Update(WritePicture(flags, inputs, comparisons));
   return status;
@@ -213,7 +215,7 @@ int RunCompare(const CompareFlags& flags) {
   }
   status = WriteOutputs(flags, *inputs, comparisons);
   if (!status.ok()) return Fail(kExitBadInput, status);
-  return num_failed > 0 ? kExitIncomplete : kExitOk;
+  return CodeFor(num_failed, static_cast<int>(comparisons.size()));
 }
 
 }  // namespace lightfit::cli

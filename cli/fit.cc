@@ -10,9 +10,12 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_replace.h"
 #include "base/output_file.h"
 #include "base/progress.h"
 #include "base/text_file.h"
+#include "base/verbose.h"
+#include "cli/command_line/standard_streams.h"
 #include "cli/exit_code.h"
 #include "cli/fit_summary.h"
 #include "cli/flags/fit_inputs.h"
@@ -80,6 +83,20 @@ int PrintFailedLights(const std::vector<FitComparison>& comparisons, bool has_pl
   return num_failed;
 }
 
+// The stations of each light's search, where that is wanted.
+void SaySearches(const std::vector<FitComparison>& comparisons) {
+  for (const FitComparison& comparison : comparisons) {
+    if (!IsVerbose() || !comparison.final.ok()) continue;
+    for (const auto& step : comparison.final->matrix.search.trace) {
+      Say(absl::StrFormat("%s, %s: %d maps looked at, energy %g",
+                          comparison.light.name,
+                          absl::StrReplaceAll(std::string(step.station), {{"_", " "}}),
+                          step.evaluations,
+                          step.energy));
+    }
+  }
+}
+
 LightFit LightFitOf(const FitComparison& comparison, double guard_texels) {
   LightFit fit;
   fit.light = comparison.light;
@@ -103,7 +120,7 @@ FitReport JsonReport(const FitFlags& flags,
                      const ReadbackFile& file,
                      const std::vector<FitComparison>& comparisons) {
   FitReport report;
-  report.source = flags.readback_path;
+  report.source = WithStreamNames(flags.readback_path);
   report.camera = file.camera;
   report.depth_kind = file.depth_kind;
   report.options = options;
@@ -118,13 +135,13 @@ FitReport JsonReport(const FitFlags& flags,
 
 // The folder tells frames of one name apart: "yard_180/0001.exr".
 std::string TitleOf(const std::string& path) {
-  const std::filesystem::path file(path);
+  const std::filesystem::path file(WithStreamNames(path));
   return (file.parent_path().filename() / file.filename()).string();
 }
 
 // The file, and what of it was taken.
 std::string SourceText(const FitFlags& flags, const ReadbackFile& file) {
-  return absl::StrCat(flags.readback_path, " (", OriginText(file.origin), ")");
+  return absl::StrCat(WithStreamNames(flags.readback_path), " (", OriginText(file.origin), ")");
 }
 
 // What is computed before anything is printed, so that the progress bar has the terminal to itself.
@@ -262,12 +279,13 @@ int RunFit(const FitFlags& flags) {
     std::fflush(stdout);
   }
   PrintWarnings(inputs->notes.Warnings());
+  SaySearches(outcome.comparisons);
   WarnAboutPixels(outcome.comparisons);
   PrintNotes(outcome.comparisons, options);
   const int num_failed = PrintFailedLights(outcome.comparisons, plan.has_value());
   status = WriteOutputs(flags, options, *inputs, outcome);
   if (!status.ok()) return Fail(kExitBadInput, status);
-  return num_failed > 0 ? kExitIncomplete : kExitOk;
+  return CodeFor(num_failed, static_cast<int>(outcome.comparisons.size()));
 }
 
 }  // namespace lightfit::cli

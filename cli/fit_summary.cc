@@ -147,7 +147,7 @@ int RunFitSummary(const FitFlags& flags) {
     absl::Status status = WriteJson(flags, *options, fits);
     if (!status.ok()) return Fail(kExitBadInput, status);
   }
-  return num_failed > 0 ? kExitIncomplete : kExitOk;
+  return CodeFor(num_failed, static_cast<int>(fits.size()));
 }
 
 }  // namespace lightfit::cli

@@ -19,6 +19,7 @@
 #include "base/text_file.h"
 #include "cli/exit_code.h"
 #include "cli/flags/scene_flags.h"
+#include "cli/flags/scene_needs.h"
 #include "geometry/sized_camera.h"
 #include "io/camera_file.h"
 #include "io/readback_exr_write.h"
@@ -99,7 +100,7 @@ void DeclareFlags(CLI::App* app, RenderFlags* flags) {
   app->add_option("--picture-light", flags->picture_light, "Which light to draw [the first]")
       ->type_name("LIGHT")
       ->group(group);
-  app->add_flag("--quiet", flags->quiet, "No table and no progress; errors and warnings only")
+  app->add_flag("-q,--quiet", flags->quiet, "No table and no progress; errors and warnings only")
       ->group(group);
   app->footer(kExamples);
 }
@@ -108,11 +109,16 @@ PixelSize PictureSize(const RenderFlags& flags) {
   return flags.picture_size.width > 0 ? flags.picture_size : flags.size;
 }
 
-absl::Status CheckOutputs(const RenderFlags& flags) {
+absl::Status CheckNeeds(const RenderFlags& flags) {
+  std::vector<std::string> missing;
   if (flags.output_path.empty() && flags.picture_path.empty()) {
-    return absl::InvalidArgumentError(
+    missing.emplace_back(
         "nothing to write: want -o FILE.exr for a read-back, --picture FILE.png, or both");
   }
+  return CheckSceneNeeds(flags.scene, std::move(missing));
+}
+
+absl::Status CheckOutputs(const RenderFlags& flags) {
   for (const auto& [flag, path] : {std::pair{"--output", flags.output_path},
                                    std::pair{"--picture", flags.picture_path},
                                    std::pair{"--lights-out", flags.lights_path}}) {
@@ -301,6 +307,7 @@ absl::Status WriteOutputs(const RenderFlags& flags, const Inputs& inputs, const 
 }
 
 int RunRender(RenderFlags flags) {
+  if (absl::Status status = CheckNeeds(flags); !status.ok()) return Fail(kExitBadInput, status);
   if (flags.size.width == 0) flags.size = DefaultSize(flags.scene);
   if (absl::Status status = CheckOutputs(flags); !status.ok()) return Fail(kExitBadInput, status);
   const absl::StatusOr<Inputs> inputs = ReadInputs(flags);

@@ -33,6 +33,17 @@ void PrintResuming(const ShotContext& context) {
   std::fflush(stdout);
 }
 
+bool HasAnswer(const ShotRows& rows) {
+  for (const auto& frames : rows) {
+    for (const std::vector<ShotRow>& frame : frames) {
+      for (const ShotRow& row : frame) {
+        if (row.error.empty()) return true;
+      }
+    }
+  }
+  return false;
+}
+
 Typeface FindTypeface() {
   Typeface typeface = Typeface::Find();
   if (!typeface.found()) {
@@ -63,6 +74,11 @@ int RunShotVerb(const ShotFlags& flags) {
   status = MakeShotFolders(*job);
   if (!status.ok()) return Fail(kExitBadInput, status);
 
+  if (flags.fit.as_published && !flags.per_frame && !flags.tracked) {
+    PrintWarning(
+        "--as-published: per-frame and tracked only, as the published algorithm has no form that "
+        "fits one matrix to a whole shot");
+  }
   ShotContext context(*job);
   if (!job->quiet) PrintResuming(context);
   status = RunShot(&context);
@@ -79,7 +95,8 @@ int RunShotVerb(const ShotFlags& flags) {
   for (const std::string& error : errors) PrintError(error);
   const absl::StatusOr<std::vector<ListedLight>> lights = ListFitLights(flags.fit);
   const int num_unusable = lights.ok() ? PrintUnusable(*lights, "matrix") : 0;
-  return errors.empty() && num_unusable == 0 ? kExitOk : kExitIncomplete;
+  if (errors.empty() && num_unusable == 0) return kExitOk;
+  return HasAnswer(context.rows) ? kExitIncomplete : kExitBadInput;
 }
 
 }  // namespace lightfit::cli

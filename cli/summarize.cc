@@ -263,7 +263,7 @@ std::function<int()> DeclareSummarize(CLI::App* app) {
       ->required()
       ->type_name("READBACK.exr|FILE.summary");
   DeclareLightFlags(app, &flags->fit.lights, group);
-  DeclareOnlyFlag(app, group, &flags->fit);
+  DeclareOnlyFlag(app, group, &flags->fit.only);
   DeclareReadbackFlags(app, group, &flags->fit);
   DeclareCameraFlags(app, "Camera", &flags->fit);
   DeclareSummingFlags(app, &flags->fit.options);
@@ -277,7 +277,8 @@ std::function<int()> DeclareSummarize(CLI::App* app) {
       ->required()
       ->type_name("FILE.summary")
       ->group("Output");
-  app->add_flag("--quiet", flags->fit.quiet, "No figures and no progress; errors and warnings only")
+  app->add_flag(
+         "-q,--quiet", flags->fit.quiet, "No figures and no progress; errors and warnings only")
       ->group("Output");
   app->footer(kExamples);
   app->callback([app, flags] {
@@ -318,7 +319,12 @@ int RunSummarize(const SummarizeFlags& flags) {
     const absl::StatusOr<std::vector<ListedLight>> lights = ListFitLights(flags.fit);
     if (lights.ok()) num_failed += PrintUnusable(*lights, "summary");
   }
-  return num_failed > 0 || !is_complete ? kExitIncomplete : kExitOk;
+  if (num_failed == 0 && is_complete) return kExitOk;
+  const bool has_samples =
+      std::any_of(sum->lights.begin(), sum->lights.end(), [](const LightSummary& light) {
+        return light.total.num_frames > 0;
+      });
+  return has_samples ? kExitIncomplete : kExitBadInput;
 }
 
 }  // namespace lightfit::cli

@@ -10,6 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "base/output_file.h"
 #include "base/progress.h"
+#include "cli/command_line/standard_streams.h"
 #include "cli/compare_inputs.h"
 #include "cli/exit_code.h"
 #include "cli/reports/fit_report.h"
@@ -140,12 +141,15 @@ int RunTune(const TuneFlags& flags) {
   const absl::StatusOr<std::vector<ListedLight>> listed = ListLights(flags.compare.scene.lights);
   if (listed.ok()) num_failed += PrintUnusable(*listed, "matrix");
   if (!flags.json_path.empty()) {
-    status = WriteFitResultJson(
-        flags.json_path,
-        TunedToProto(flags.compare.scene.scene, inputs->stage, options, flags.clip, *lights));
+    status = WriteFitResultJson(flags.json_path,
+                                TunedToProto(WithStreamNames(flags.compare.scene.scene),
+                                             inputs->stage,
+                                             options,
+                                             flags.clip,
+                                             *lights));
     if (!status.ok()) return Fail(kExitBadInput, status);
   }
-  return num_failed > 0 ? kExitIncomplete : kExitOk;
+  return CodeFor(num_failed, static_cast<int>(lights->size()));
 }
 
 }  // namespace lightfit::cli

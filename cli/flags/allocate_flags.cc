@@ -69,6 +69,13 @@ CLI::Option* AddParsed(CLI::App* app,
       meaning);
 }
 
+// A single number would be taken for the width as likely as for a square.
+absl::StatusOr<MapSize> ParseImageSize(const std::string& text) {
+  if (ParseSides(text).has_value()) return ParseMapSize(text);
+  return absl::InvalidArgumentError(
+      absl::StrCat("\"", text, "\" is no size, want WIDTHxHEIGHT in pixels such as 1920x1080"));
+}
+
 void DeclareGoal(CLI::App* app, AllocateFlags* flags) {
   const std::string group = "Goal (one of --budget and --tolerance)";
   CLI::Option* budget = AddParsed(
@@ -92,7 +99,7 @@ void DeclareGoal(CLI::App* app, AllocateFlags* flags) {
   AddParsed(
       app,
       "--image",
-      ParseMapSize,
+      ParseImageSize,
       [flags](MapSize image) { flags->image = image; },
       "Size of the final image, pixels; where its shape is not the read-back's, the larger ratio "
       "of the two counts [the read-back's]")
@@ -176,7 +183,7 @@ void DeclareAllocateFlags(CLI::App* app, AllocateFlags* flags) {
       ->type_name("FILE")
       ->group(input);
   DeclareLightFlags(app, &fit->lights, input);
-  DeclareOnlyFlag(app, input, fit);
+  DeclareOnlyFlag(app, input, &fit->only);
   DeclareReadbackFlags(app, input, fit);
   DeclareCameraFlags(app, kCameraGroup, fit);
   DeclareMethodFlags(app, &fit->options);
@@ -190,7 +197,7 @@ void DeclareAllocateFlags(CLI::App* app, AllocateFlags* flags) {
       ->type_name("FILE.json")
       ->group(output);
   DeclareLegendFlag(app, output, &fit->legend);
-  app->add_flag("--quiet", fit->quiet, "No table and no progress; errors and warnings only")
+  app->add_flag("-q,--quiet", fit->quiet, "No table and no progress; errors and warnings only")
       ->group(output);
   app->footer(kExamples);
   app->callback([app, flags] {

@@ -44,7 +44,7 @@ struct CompareFlags {
 
   PixelSize screen = {750, 750};
   std::optional<PixelSize> readback;  // absent: DefaultReadbackSize()
-  MapSize map = {400, 400};
+  MapSize map = FitFlags().map;
   std::vector<MatrixFlag> matrices;
   JudgeOptions judge = CompareOptions().judge;
   CrawlFlags crawl;

@@ -2,12 +2,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
-#include "base/suggest.h"
-#include "cli/flags/choices.h"
+#include "cli/flags/choice_option.h"
 #include "cli/flags/size_flags.h"
+#include "io/summary_file.h"
 
 namespace lightfit::cli {
 namespace {
@@ -33,31 +34,18 @@ constexpr char kExamples[] =
     "may\n"
     "lie in several parts; what was taken stands in the first line.";
 
-// An option whose value is one of a few words. CLI11's own transformer would also take the numbers
-// behind the words.
-template <typename Value, typename Target>
-CLI::Option* AddChoice(CLI::App* app,
-                       const std::string& flag,
-                       const Words<Value>& words,
-                       Target* target,
-                       const std::string& meaning) {
-  const auto parse = [=](const std::string& text) {
-    for (const auto& [word, value] : words) {
-      if (word == text) {
-        *target = value;
-        return;
-      }
-    }
-    const std::vector<std::string> choices = WordsOnly(words);
+// A distance that may be infinite, by whatever name and in any case.
+CLI::Option* AddDistance(CLI::App* app,
+                         const std::string& flag,
+                         double* distance,
+                         const std::string& meaning) {
+  const auto parse = [flag, distance](const std::string& text) {
+    // Takes "inf" and "infinity" too; a sign before them makes them none that is positive.
+    if (absl::SimpleAtod(text, distance) && *distance > 0.0) return;
     throw CLI::ValidationError(flag,
-                               absl::StrCat("there is no \"",
-                                            text,
-                                            "\", want ",
-                                            absl::StrJoin(choices, ", "),
-                                            DidYouMean(text, choices)));
+                               absl::StrCat("\"", text, "\", want a distance above 0, or inf"));
   };
-  return app->add_option_function<std::string>(flag, parse, meaning)
-      ->type_name(absl::StrJoin(WordsOnly(words), "|"));
+  return app->add_option_function<std::string>(flag, parse, meaning)->type_name("DISTANCE|inf");
 }
 
 void DeclareInput(CLI::App* app, FitFlags* flags) {
@@ -71,7 +59,7 @@ void DeclareInput(CLI::App* app, FitFlags* flags) {
       ->type_name("FILE")
       ->group(group);
   DeclareLightFlags(app, &flags->lights, group);
-  DeclareOnlyFlag(app, group, flags);
+  DeclareOnlyFlag(app, group, &flags->only);
   DeclareReadbackFlags(app, group, flags);
   DeclareCoverReadbackFlag(app, group, flags);
 }
@@ -127,14 +115,14 @@ void DeclareOutput(CLI::App* app, FitFlags* flags) {
       ->type_name("FILE.exr")
       ->group(group);
   DeclareLegendFlag(app, group, &flags->legend);
-  app->add_flag("--quiet", flags->quiet, "No table and no progress; errors and warnings only")
+  app->add_flag("-q,--quiet", flags->quiet, "No table and no progress; errors and warnings only")
       ->group(group);
 }
 
 }  // namespace
 
-void DeclareOnlyFlag(CLI::App* app, const std::string& group, FitFlags* flags) {
-  app->add_option("--only", flags->only, "This light only (may be repeated)")
+void DeclareOnlyFlag(CLI::App* app, const std::string& group, std::vector<std::string>* only) {
+  app->add_option("--only", *only, "This light only (may be repeated)")
       ->type_name("LIGHT")
       ->expected(1)
       ->take_all()
@@ -232,9 +220,7 @@ void DeclareCameraExrFlags(CLI::App* app, const std::string& group, CameraExrOpt
       ->type_name("DISTANCE")
       ->check(CLI::PositiveNumber)
       ->group(group);
-  app->add_option("--far", camera->far, "Far clip plane, world units (NDC depth only)")
-      ->type_name("DISTANCE")
-      ->check(CLI::PositiveNumber)
+  AddDistance(app, "--far", &camera->far, "Far clip plane, world units, or inf (NDC depth only)")
       ->group(group);
   app->add_option(
          "--pixel-aspect", camera->pixel_aspect, "Width over height of a pixel [as the file says]")
@@ -336,9 +322,26 @@ void DeclareFitFlags(CLI::App* app, FitFlags* flags) {
   });
 }
 
+void CheckIsReadback(const CLI::App& app, const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) {
+    throw CLI::ValidationError(path,
+                               absl::StrCat("is a folder: for all its frames lightfit shot ",
+                                            path,
+                                            "; lightfit ",
+                                            app.get_name(),
+                                            " takes one read-back of them"));
+  }
+  if (IsSummaryFile(path)) {
+    throw CLI::ValidationError(
+        path, absl::StrCat("is a summary: lightfit ", app.get_name(), " --summary ", path));
+  }
+}
+
 void CheckSource(const CLI::App& app,
                  const FitFlags& flags,
                  const std::vector<std::string>& readback_groups) {
+  if (!flags.readback_path.empty()) CheckIsReadback(app, flags.readback_path);
   if (flags.readback_path.empty() == flags.summary_paths.empty()) {
     throw CLI::ValidationError(app.get_name(),
                                "want a read-back or --summary, one of the two; lightfit summarize "

@@ -67,7 +67,7 @@ void DeclareFitFlags(CLI::App* app, FitFlags* flags);
 // fitted, and of that what its samples are summed by; the map's size and clip space; clip space
 // alone; whether tables are explained. The border that `options` has when the method is declared is
 // the default.
-void DeclareOnlyFlag(CLI::App* app, const std::string& group, FitFlags* flags);
+void DeclareOnlyFlag(CLI::App* app, const std::string& group, std::vector<std::string>* only);
 void DeclareReadbackFlags(CLI::App* app, const std::string& group, FitFlags* flags);
 void DeclareCoverReadbackFlag(CLI::App* app, const std::string& group, FitFlags* flags);
 void DeclareCameraFlags(CLI::App* app, const std::string& group, FitFlags* flags);

@@ -9,6 +9,8 @@
 #include "absl/strings/str_join.h"
 #include "base/suggest.h"
 #include "base/text_file.h"
+#include "base/verbose.h"
+#include "cli/command_line/standard_streams.h"
 #include "io/camera_file.h"
 #include "optimizer/readback/readback.h"
 
@@ -23,10 +25,6 @@ absl::StatusOr<ReadbackExrOptions> WithBackgroundChecked(const ReadbackExrOption
                    DepthKindName(options.depth_kind),
                    ", whose background is the far plane: leave it out"));
 }
-
-}  // namespace
-
-namespace {
 
 const std::string& NameOf(const Light& light) { return light.name; }
 const std::string& NameOf(const ListedLight& listed) { return listed.light.name; }
@@ -77,8 +75,7 @@ int NumUsable(const std::vector<ListedLight>& lights) {
 absl::Status TooManyChosenError(int count) {
   return absl::InvalidArgumentError(
       absl::StrFormat("lights: %d of them, want at most %d at once; choose some with --only NAME, "
-                      "and the others in "
-                      "another run",
+                      "and the others in another run",
                       count,
                       kMaxLights));
 }
@@ -171,6 +168,31 @@ absl::StatusOr<ReadbackExrOptions> ReadbackOptionsOf(const FitFlags& flags) {
   return WithBackgroundChecked(options);
 }
 
+namespace {
+
+void SayWhatIsRead(const FitFlags& flags, const FitInputs& inputs) {
+  if (!IsVerbose()) return;
+  const Camera& camera = inputs.file.camera;
+  Say(absl::StrCat("read ",
+                   WithStreamNames(flags.readback_path),
+                   " (",
+                   OriginText(inputs.file.origin),
+                   "): ",
+                   camera.width,
+                   "x",
+                   camera.height,
+                   " pixels"));
+  for (size_t i = 0; i < inputs.lights.size(); ++i) {
+    const absl::Status& status = inputs.file.light_status[i];
+    Say(absl::StrCat("light \"",
+                     inputs.lights[i].name,
+                     "\": ",
+                     status.ok() ? "its shadows are there" : std::string(status.message())));
+  }
+}
+
+}  // namespace
+
 Readback FitInputs::View() const {
   Readback view = file.View();
   if (fine_cover_file.has_value()) view.fine_cover = &fine_cover;
@@ -216,6 +238,7 @@ absl::StatusOr<FitInputs> ReadFitInputs(const FitFlags& flags, std::vector<Liste
     inputs.file.light_status.push_back(lights[i].status.ok() ? of_usable[next++]
                                                              : lights[i].status);
   }
+  SayWhatIsRead(flags, inputs);
   absl::Status status = ValidateReadback(inputs.View());
   if (!status.ok()) return status;
   return inputs;

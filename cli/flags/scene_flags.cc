@@ -13,6 +13,9 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
 #include "base/suggest.h"
+#include "cli/flags/fit_flags.h"
+#include "cli/flags/fit_inputs.h"
+#include "cli/flags/size_flags.h"
 #include "geometry/resized_camera.h"
 #include "geometry/sized_camera.h"
 #include "io/camera_file.h"
@@ -67,9 +70,8 @@ void DeclareCamera(CLI::App* app, SceneFlags* flags) {
            if (IsView(text)) ParseInto("--camera", text, ParseView, &flags->view);
          },
          "Where the eye is, what it looks at and the vertical field of view in degrees [60]; or "
-         "a JSON file with the camera, a scene file with its frames, or a glTF file: "
-         "scene.glb:NAME "
-         "for one of several cameras [that of SCENE, if it is a glTF file with one]")
+         "a JSON file with the camera, a scene file with its frames, or a glTF file, as "
+         "scene.glb:NAME for one of several cameras [that of SCENE, if it is a glTF file with one]")
       ->type_name("X,Y,Z:X,Y,Z[:DEG]|FILE")
       ->group(group);
   app->add_option_function<std::string>(
@@ -131,6 +133,7 @@ void DeclareSceneFlags(CLI::App* app, SceneFlags* flags, const std::string& type
   DeclareCamera(app, flags);
   const std::string group = "Lights";
   DeclareLightFlags(app, &flags->lights, group);
+  DeclareOnlyFlag(app, group, &flags->only);
   app->add_option("--random-lights",
                   flags->num_random_lights,
                   "As many suns sun001 ..., uniform on the hemisphere around --up")
@@ -231,7 +234,7 @@ absl::StatusOr<std::vector<Light>> SceneLights(const SceneFlags& flags) {
     return absl::InvalidArgumentError(
         "no lights: want --lights FILE, --light NAME=sun:X,Y,Z or --random-lights COUNT");
   }
-  return lights;
+  return ChooseLights(*lights, flags.only);
 }
 
 absl::StatusOr<SceneGeneratorOptions> ParseGenerator(const std::string& text) {
@@ -284,13 +287,12 @@ absl::StatusOr<SceneGeneratorOptions> ParseGenerator(const std::string& text) {
 
 absl::StatusOr<PixelSize> ParsePixelSize(const std::string& text) {
   constexpr int64_t kMaxPixels = int64_t{1} << 25;  // 2.4 GB while rendering
-  const std::vector<std::string> sides = absl::StrSplit(text, 'x');
-  PixelSize size;
-  if (sides.size() != 2 || !absl::SimpleAtoi(sides[0], &size.width) ||
-      !absl::SimpleAtoi(sides[1], &size.height) || size.width < 1 || size.height < 1) {
+  const std::optional<std::pair<int, int>> sides = ParseSides(text);
+  if (!sides.has_value() || sides->first < 1 || sides->second < 1) {
     return absl::InvalidArgumentError(
         absl::StrCat("\"", text, "\" is no size, want WIDTHxHEIGHT in pixels such as 180x180"));
   }
+  const PixelSize size = {sides->first, sides->second};
   if (int64_t{size.width} * size.height > kMaxPixels) {
     return absl::InvalidArgumentError(
         absl::StrCat(text, ": want at most ", kMaxPixels, " pixels, such as 8192x4096"));

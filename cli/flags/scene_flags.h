@@ -38,6 +38,7 @@ struct SceneFlags {
   int frame = 0;                                   // of the camera file
   Eigen::Vector3d up = Eigen::Vector3d::UnitY();   // of the view and of random lights
   LightFlags lights;
+  std::vector<std::string> only;  // names; empty: all
   int num_random_lights = 0;
   uint64_t seed = 1;
 };

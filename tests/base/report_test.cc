@@ -75,6 +75,10 @@ TEST(DidYouMean, OffersOnlyCloseWords) {
   EXPECT_EQ(DidYouMean("kay", choices), "; did you mean \"key\"?");
   EXPECT_EQ(DidYouMean("lantern", choices), "");
   EXPECT_EQ(DidYouMean("sun", {}), "");
+  EXPECT_EQ(DidYouMean("fti", {"fit", "shot"}), "; did you mean \"fit\"?");
+  EXPECT_EQ(DidYouMean("depth", {"depth-kind", "depth-channel", "map"}),
+            "; did you mean \"depth-kind\" or \"depth-channel\"?");
+  EXPECT_EQ(DidYouMean("near-clip", {"x"}), "");
 }
 
 }  // namespace

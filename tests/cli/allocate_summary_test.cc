@@ -159,10 +159,10 @@ TEST(AllocateSummary, ALightThatAllFramesLackStopsNoOtherAndOneThatSomeLackIsNam
                          "-o",
                          without})
                 .exit_code,
-            3);
+            2);
   for (const Arguments& goal : {Arguments{"--budget", "1024x1024"}, {"--tolerance", "rms:3"}}) {
     const ProcessResult none = AllocateSummary(without, goal);
-    EXPECT_EQ(none.exit_code, 3);
+    EXPECT_EQ(none.exit_code, 2);
     EXPECT_THAT(none.err,
                 AllOf(HasSubstr("no map for light \"sun\": nothing of it in 1 of 1 frames"),
                       Not(HasSubstr("warning"))));

@@ -159,6 +159,8 @@ TEST_F(ComparePlansTest, AReadbackGivesEnergiesOfPlans) {
                                             kYardLights,
                                             "--maps",
                                             "2",
+                                            "--texels",
+                                            "160000",
                                             "--json",
                                             folder_.Path("out.json")});
   EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -205,7 +207,7 @@ TEST_F(ComparePlansTest, HelpTellsOfSeveralMaps) {
   const ProcessResult result = RunLightfit({"compare", "--help"});
   EXPECT_THAT(result.out,
               AllOf(HasSubstr("--maps COUNT"),
-                    HasSubstr("[400x400, as one map has]"),
+                    HasSubstr("[1024x1024, as one map has]"),
                     HasSubstr("--maps 4 --texels 1024x1024")));
 }
 

@@ -219,6 +219,8 @@ TEST_F(GivenPlansTest, AReadbackGivesThePlansFigures) {
                                             kYardLights,
                                             "--maps",
                                             "3",
+                                            "--texels",
+                                            "160000",
                                             "--matrix",
                                             "kept=" + folder_.Path("plan.json"),
                                             "--json",
