@@ -1,5 +1,7 @@
 #include "render/readback_image.h"
 
+#include <limits>
+
 namespace lightfit {
 
 Readback ReadbackImage::View() const {
@@ -7,6 +9,7 @@ Readback ReadbackImage::View() const {
   readback.camera = camera;
   readback.depth = depth;
   readback.depth_kind = DepthKind::kCameraZ;
+  readback.background = std::numeric_limits<float>::infinity();  // kReadbackBackground is
   readback.shadow_bits = shadow_bits;
   readback.facing_bits = facing_bits;
   readback.facing_lights = facing_lights;

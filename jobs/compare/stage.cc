@@ -91,6 +91,7 @@ absl::StatusOr<CompareStage> MakeStage(const RayCaster& caster,
   }
   stage.readback.camera = readback_camera;
   stage.readback.depth = stage.readback_depth;
+  stage.readback.background = std::numeric_limits<float>::infinity();  // kReadbackBackground is
 
   double nearest = std::numeric_limits<double>::infinity(), furthest = 0.0;
   for (const SurfaceImage* seen : {&stage.screen, &stage.readback_surfaces}) {

@@ -73,7 +73,7 @@ TEST_F(Yard, EveryVerbNamesTheSkyAndTheOption) {
   for (const Arguments& verb : {Arguments{"fit", frame, "--only", "sun"},
                                 {"compare", frame, "--map", "256x256"},
                                 {"summarize", frame, second, "-o", folder_.Path("a.summary")},
-                                {"allocate", frame, "--budget", "1M"},
+                                {"allocate", frame, "--budget", "1024x1024"},
                                 {"shot", frame, second, "-o", folder_.Path("shot")}}) {
     const ProcessResult result = Run(verb);
     EXPECT_EQ(result.exit_code, 0) << result.err;
