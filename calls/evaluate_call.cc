@@ -11,7 +11,6 @@
 #include "absl/strings/str_join.h"
 #include "base/stop.h"
 #include "base/text_file.h"
-#include "calls/candidate_matrix.h"
 #include "calls/checked_readback.h"
 #include "calls/message_text.h"
 #include "calls/pixel_buffer.h"

@@ -9,7 +9,6 @@
 #include "base/stop.h"
 #include "base/text_file.h"
 #include "base/version.h"
-#include "calls/candidate_matrix.h"
 #include "calls/pixel_buffer.h"
 #include "calls/request_fields.h"
 #include "calls/request_lights.h"

@@ -28,7 +28,9 @@ PLANS = f"{CORE} partition partition/tracking"
 WIRE = f"{PLANS} lightfit proto wire"
 IO = f"{WIRE} scenes io"
 JOBS = f"{IO} jobs jobs/*"
-EVERYTHING_BELOW_CLI = f"{JOBS} methods partition/* scenes render render/* picture calls server"
+EVERYTHING_BELOW_CLI = (
+    f"{JOBS} methods partition/* scenes render render/* picture calls calls/* server"
+)
 
 MAY_INCLUDE = {
     "base": "",
@@ -59,12 +61,12 @@ MAY_INCLUDE = {
     "jobs/shot": f"{IO} jobs",
     "picture": f"{JOBS} methods render",
     "calls": f"{IO} jobs",
-    "calls/compare_call.cc": f"{IO} jobs jobs/compare calls",
-    "server": "base lightfit io calls",
+    "calls/compare": f"{IO} jobs jobs/compare calls",
+    "server": "base lightfit io calls calls/compare",
     "cli/flags": EVERYTHING_BELOW_CLI,
     "cli/reports": f"{EVERYTHING_BELOW_CLI} cli/flags",
     "cli": f"{EVERYTHING_BELOW_CLI} cli/*",
-    "python": f"{IO} jobs calls",
+    "python": f"{IO} jobs calls calls/compare",
     "examples": f"{CORE} render render/generator lightfit",
     "fuzz": f"{IO} jobs scenes render calls",
     "bench": f"{JOBS} methods partition/* scenes render render/* picture tests",

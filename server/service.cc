@@ -1,7 +1,7 @@
 #include "server/service.h"
 
 #include "calls/allocate_call.h"
-#include "calls/compare_call.h"
+#include "calls/compare/compare_call.h"
 #include "calls/evaluate_call.h"
 #include "calls/fit_call.h"
 #include "calls/summarize_call.h"

@@ -24,7 +24,7 @@
 #include "absl/strings/str_format.h"
 #include "calls/allocate_call.h"
 #include "calls/call_context.h"
-#include "calls/compare_call.h"
+#include "calls/compare/compare_call.h"
 #include "calls/evaluate_call.h"
 #include "calls/fine_cover_buffer.h"
 #include "calls/fit_call.h"

@@ -9,6 +9,7 @@
 #include "optimizer/fit.h"
 #include "tests/calls/requests.h"
 #include "tests/io/summary_examples.h"
+#include "tests/testing/test_scene.h"
 #include "wire/matrix_proto.h"
 #include "wire/summary_proto.h"
 
@@ -108,6 +109,12 @@ TEST(SummarizeCall, BadInputsAreNamed) {
 
 TEST(SummarizeCall, StopsWhenItIsTold) {
   testing::ExpectStops(YardRequest(Yard().file, "yard.exr"), &AnswerSummarize);
+}
+
+TEST(SummarizeCall, DamagedRequestsAreAnsweredOrRefused) {
+  const testing::TestScene scene(3, 2, 24, 16);
+  auto request = testing::RequestOf<v1::SummarizeRequest>(scene.View(), scene.lights);
+  testing::ExpectSurvivesMutations(request, &AnswerSummarize, 1000);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// calls/compare_call.h
+// calls/compare/compare_call.h
 //
 // The call Compare: every way to set up a shadow map, side by side on one read-back.
 // In:   v1::CompareRequest.

@@ -1,4 +1,4 @@
-#include "calls/compare_call.h"
+#include "calls/compare/compare_call.h"
 
 #include <string>
 #include <utility>
@@ -8,7 +8,6 @@
 #include "absl/strings/str_format.h"
 #include "base/stop.h"
 #include "base/text_file.h"
-#include "calls/candidate_matrix.h"
 #include "calls/pixel_buffer.h"
 #include "calls/request_fields.h"
 #include "calls/request_lights.h"

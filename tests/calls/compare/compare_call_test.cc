@@ -1,4 +1,4 @@
-#include "calls/compare_call.h"
+#include "calls/compare/compare_call.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,6 +7,7 @@
 
 #include "tests/calls/requests.h"
 #include "tests/io/summary_examples.h"
+#include "tests/testing/test_scene.h"
 #include "wire/matrix_proto.h"
 
 namespace lightfit {
@@ -64,6 +65,14 @@ TEST(CompareCall, StopsWhenItIsTold) {
   v1::CompareRequest request = YardRequest();
   while (request.lights_size() > 1) request.mutable_lights()->RemoveLast();
   testing::ExpectStops(request, &AnswerCompare);
+}
+
+TEST(CompareCall, DamagedRequestsAreAnsweredOrRefused) {
+  const testing::TestScene scene(3, 2, 24, 16);
+  auto request = testing::RequestOf<v1::CompareRequest>(scene.View(), scene.lights);
+  request.mutable_map()->set_width(64);
+  request.mutable_map()->set_height(64);
+  testing::ExpectSurvivesMutations(request, &AnswerCompare, 300);
 }
 
 }  // namespace
