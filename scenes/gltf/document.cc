@@ -24,7 +24,8 @@ constexpr int64_t kShownPerByte = 256, kMinShown = int64_t{1} << 20;
 constexpr int64_t kMaxShown = int64_t{1} << 29;
 
 // Required extensions that are read here, and those that move no geometry.
-constexpr absl::string_view kKnown[] = {"EXT_mesh_gpu_instancing",
+constexpr absl::string_view kKnown[] = {"CESIUM_RTC",
+                                        "EXT_mesh_gpu_instancing",
                                         "EXT_meshopt_compression",
                                         "KHR_draco_mesh_compression",
                                         "KHR_lights_punctual",
@@ -47,6 +48,7 @@ constexpr absl::string_view kKnownBeginnings[] = {"KHR_materials_",
                                                   "KHR_texture_",
                                                   "EXT_materials_",
                                                   "EXT_texture_",
+                                                  "MSFT_packing_",
                                                   "MSFT_texture_",
                                                   "EXT_lights_",
                                                   "KHR_audio",
