@@ -80,7 +80,7 @@ absl::StatusOr<gltf::CameraNode> Choose(const std::vector<gltf::CameraNode>& cam
   std::vector<std::string> names;
   for (const gltf::CameraNode& camera : cameras) {
     if (camera.name == name) return camera;
-    names.push_back(absl::CHexEscape(camera.name));
+    names.push_back(absl::Utf8SafeCEscape(camera.name));
   }
   if (name.empty() && cameras.size() == 1) return cameras[0];
   size_t number = 0;
@@ -94,7 +94,7 @@ absl::StatusOr<gltf::CameraNode> Choose(const std::vector<gltf::CameraNode>& cam
                         absl::StrJoin(names, absl::StrCat(", ", file, ":"))));
   }
   return absl::InvalidArgumentError(absl::StrFormat("has no camera \"%s\", want one of %s%s",
-                                                    absl::CHexEscape(name),
+                                                    absl::Utf8SafeCEscape(name),
                                                     absl::StrJoin(names, ", "),
                                                     DidYouMean(name, names)));
 }
@@ -103,7 +103,7 @@ absl::StatusOr<Camera> CameraOf(const gltf::CameraNode& node) {
   constexpr double kRightAngle = 1e-4;  // cosines between the axes
   const auto refuse = [&node](absl::string_view what) {
     return absl::InvalidArgumentError(
-        absl::StrCat("camera \"", absl::CHexEscape(node.name), "\": ", what));
+        absl::StrCat("camera \"", absl::Utf8SafeCEscape(node.name), "\": ", what));
   };
   if (!node.is_perspective) return refuse("is orthographic, want a perspective one");
   // Scale is no part of a camera's pose.

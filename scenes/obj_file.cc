@@ -48,6 +48,7 @@ bool ParseNumber(absl::string_view word, T* value) {
 class ObjParser {
  public:
   absl::Status Read(absl::string_view text) {
+    if (text.find('\n') == absl::string_view::npos) line_end_ = '\r';
     while (!text.empty()) {
       const absl::string_view line = TakeLine(&text);
       if (absl::Status status = ReadLine(line); !status.ok()) return status;
@@ -85,7 +86,7 @@ class ObjParser {
     joined_.clear();
     while (true) {
       ++line_number_;
-      const size_t end = text->find('\n');
+      const size_t end = text->find(line_end_);
       absl::string_view line = text->substr(0, end);
       text->remove_prefix(end == absl::string_view::npos ? text->size() : end + 1);
       absl::ConsumeSuffix(&line, "\r");
@@ -159,6 +160,7 @@ class ObjParser {
   std::vector<int64_t> ends_;
   int64_t last_index_ = -1, last_index_line_ = 0;
   int64_t line_number_ = 0;
+  char line_end_ = '\n';
   std::string joined_;
 };
 

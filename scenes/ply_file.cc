@@ -43,6 +43,7 @@ struct Element {
 
 struct Header {
   Format format = Format::kText;
+  char line_end = '\n';
   std::vector<Element> elements;
 };
 
@@ -98,19 +99,29 @@ absl::StatusOr<Property> ParseProperty(const std::vector<absl::string_view>& wor
   return property;
 }
 
+// What ends a line: a line feed, with or without a carriage return before it, or that alone.
+char LineEndOf(absl::string_view bytes) {
+  const size_t end = bytes.find_first_of("\r\n");
+  const bool is_return_alone = end != absl::string_view::npos && bytes[end] == '\r' &&
+                               (end + 1 >= bytes.size() || bytes[end + 1] != '\n');
+  return is_return_alone ? '\r' : '\n';
+}
+
 // Takes the header off `bytes`.
 absl::StatusOr<Header> TakeHeader(absl::string_view* bytes) {
   Header header;
+  header.line_end = LineEndOf(*bytes);
   const auto num_bytes = static_cast<int64_t>(bytes->size());
   while (true) {
-    const size_t end = bytes->find('\n');
+    const size_t end = bytes->find(header.line_end);
     if (end == absl::string_view::npos) {
       return absl::InvalidArgumentError(
           "its PLY header has no end_header; it is damaged or cut short");
     }
     const absl::string_view line = absl::StripTrailingAsciiWhitespace(bytes->substr(0, end));
     bytes->remove_prefix(end + 1);
-    const std::vector<absl::string_view> words = absl::StrSplit(line, ' ', absl::SkipEmpty());
+    const std::vector<absl::string_view> words =
+        absl::StrSplit(line, absl::ByAnyChar(" \t"), absl::SkipEmpty());
     if (words.empty() || words[0] == "ply" || words[0] == "comment" || words[0] == "obj_info") {
       continue;
     }
@@ -150,7 +161,8 @@ absl::StatusOr<Header> TakeHeader(absl::string_view* bytes) {
 // Numbers one after the other.
 class Body {
  public:
-  Body(absl::string_view bytes, Format format) : bytes_(bytes), format_(format) {}
+  Body(absl::string_view bytes, const Header& header)
+      : bytes_(bytes), format_(header.format), line_end_(header.line_end) {}
 
   int64_t num_bytes_left() const { return static_cast<int64_t>(bytes_.size()); }
 
@@ -185,7 +197,7 @@ class Body {
   // In text an entry is a line: what else stands on it is left out.
   void EndEntry() {
     if (format_ != Format::kText) return;
-    const size_t end = bytes_.find('\n');
+    const size_t end = bytes_.find(line_end_);
     bytes_.remove_prefix(end == absl::string_view::npos ? bytes_.size() : end);
   }
 
@@ -202,6 +214,7 @@ class Body {
 
   absl::string_view bytes_;
   Format format_;
+  char line_end_;
 };
 
 // What the body of a file holds.
@@ -314,7 +327,7 @@ absl::StatusOr<Scene> ParsePly(absl::string_view bytes) {
   const absl::StatusOr<Header> header = TakeHeader(&bytes);
   if (!header.ok()) return header.status();
   Content content;
-  Body body(bytes, header->format);
+  Body body(bytes, *header);
   std::vector<double> list;
   for (const Element& element : header->elements) {
     if (element.properties.empty()) continue;

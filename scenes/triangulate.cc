@@ -17,8 +17,8 @@ namespace {
 constexpr double kMaxCoordinate = 1e18;
 
 // Corners and boxes that are looked at for each corner of a polygon. Outlines that do not cross
-// themselves take a hundred or so.
-constexpr int64_t kStepsPerCorner = 2000, kMinSteps = 1'000'000;
+// themselves take fewer than a hundred.
+constexpr int64_t kStepsPerCorner = 300, kMinSteps = 100'000;
 
 // So many corners are looked at together.
 constexpr size_t kBucket = 8;
@@ -239,6 +239,7 @@ bool Triangulator::ClipEars(std::vector<Eigen::Vector3i>* triangles) {
   is_queued_.assign(corners_.size(), 0);
   queue_.clear();
   is_strict_ = true;
+  last_clipped_next_ = 0;
   EnqueueAll();
   while (num_left_ > 2) {
     if (steps_left_ <= 0) return false;

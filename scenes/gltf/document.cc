@@ -1,21 +1,17 @@
 #include "scenes/gltf/document.h"
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
-#include <fstream>
-#include <system_error>
 #include <utility>
 
-#include "absl/strings/ascii.h"
 #include "absl/strings/escaping.h"
 #include "absl/strings/match.h"
-#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "base/text_encoding.h"
 #include "scenes/gltf/meshopt.h"
+#include "scenes/gltf/uri.h"
 
 namespace lightfit::gltf {
 
@@ -28,7 +24,8 @@ constexpr int64_t kShownPerByte = 256, kMinShown = int64_t{1} << 20;
 constexpr int64_t kMaxShown = int64_t{1} << 29;
 
 // Required extensions that are read here, and those that move no geometry.
-constexpr absl::string_view kKnown[] = {"EXT_mesh_gpu_instancing",
+constexpr absl::string_view kKnown[] = {"CESIUM_RTC",
+                                        "EXT_mesh_gpu_instancing",
                                         "EXT_meshopt_compression",
                                         "KHR_draco_mesh_compression",
                                         "KHR_lights_punctual",
@@ -51,77 +48,11 @@ constexpr absl::string_view kKnownBeginnings[] = {"KHR_materials_",
                                                   "KHR_texture_",
                                                   "EXT_materials_",
                                                   "EXT_texture_",
+                                                  "MSFT_packing_",
                                                   "MSFT_texture_",
                                                   "EXT_lights_",
                                                   "KHR_audio",
                                                   "EXT_color_"};
-
-std::string PercentDecoded(absl::string_view text) {
-  std::string decoded;
-  for (size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '%' && i + 2 < text.size() &&
-        std::isxdigit(static_cast<unsigned char>(text[i + 1])) != 0 &&
-        std::isxdigit(static_cast<unsigned char>(text[i + 2])) != 0) {
-      decoded += absl::HexStringToBytes(text.substr(i + 1, 2));
-      i += 2;
-    } else {
-      decoded += text[i];
-    }
-  }
-  return decoded;
-}
-
-absl::StatusOr<std::string> ReadWhole(const std::filesystem::path& path, int64_t max_bytes) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) {
-    return absl::InvalidArgumentError("there is no such file");
-  }
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return absl::InvalidArgumentError("it cannot be opened for reading");
-  const auto size = static_cast<int64_t>(std::filesystem::file_size(path, error));
-  std::string bytes(static_cast<size_t>(std::min(error ? 0 : size, max_bytes)), '\0');
-  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<size_t>(file.gcount()));
-  return bytes;
-}
-
-// The bytes that a URI names.
-absl::StatusOr<std::string> ReadUri(const std::string& folder,
-                                    const std::string& uri,
-                                    int64_t max_bytes) {
-  const size_t colon = uri.find(':');
-  if (absl::StartsWith(uri, "data:")) {
-    const size_t comma = uri.find(',');
-    if (comma == std::string::npos) return absl::InvalidArgumentError("its data URI has no data");
-    const absl::string_view data = absl::string_view(uri).substr(comma + 1);
-    if (!absl::EndsWith(absl::string_view(uri).substr(0, comma), ";base64")) {
-      return PercentDecoded(data);
-    }
-    std::string bytes;
-    if (!absl::Base64Unescape(data, &bytes)) {
-      return absl::InvalidArgumentError("its data URI is no base64");
-    }
-    return bytes;
-  }
-  // A drive letter of Windows is one letter before the colon.
-  if (colon != std::string::npos && colon > 1 && absl::StartsWith(uri.substr(colon), "://")) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        "is at ", uri.substr(0, 80), ", want a file beside this one: fetch it and write its name"));
-  }
-  const std::filesystem::path decoded = std::filesystem::path(folder) / PercentDecoded(uri);
-  std::error_code error;
-  // Some exporters write names as they are.
-  const std::filesystem::path plain = std::filesystem::path(folder) / uri;
-  const std::filesystem::path& path =
-      std::filesystem::exists(decoded, error) || !std::filesystem::exists(plain, error) ? decoded
-                                                                                        : plain;
-  absl::StatusOr<std::string> bytes = ReadWhole(path, max_bytes);
-  if (!bytes.ok()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("is in ", path.string(), ": ", bytes.status().message()));
-  }
-  return bytes;
-}
 
 uint32_t WordAt(absl::string_view bytes, int64_t at) {
   uint32_t word = 0;
@@ -134,17 +65,22 @@ uint32_t WordAt(absl::string_view bytes, int64_t at) {
 }  // namespace
 
 absl::StatusOr<Document> Document::Read(const std::string& path) {
-  absl::StatusOr<std::string> bytes = ReadWhole(path, int64_t{1} << 40);
+  constexpr int64_t kMaxBytes = int64_t{1} << 40;
+  absl::StatusOr<std::string> bytes = ReadWhole(path, kMaxBytes);
   if (!bytes.ok()) return bytes.status();
+  return Parse(*std::move(bytes), std::filesystem::path(path).parent_path().string());
+}
+
+absl::StatusOr<Document> Document::Parse(std::string bytes, std::string folder) {
   Document document;
-  document.num_bytes_ = static_cast<int64_t>(bytes->size());
-  document.folder_ = std::filesystem::path(path).parent_path().string();
+  document.num_bytes_ = static_cast<int64_t>(bytes.size());
+  document.folder_ = std::move(folder);
   absl::Status status;
-  if (absl::StartsWith(*bytes, "glTF")) {
-    document.file_ = *std::move(bytes);
+  if (absl::StartsWith(bytes, "glTF")) {
+    document.file_ = std::make_unique<const std::string>(std::move(bytes));
     status = document.ReadGlb();
   } else {
-    const absl::StatusOr<std::string> text = DecodeText(*std::move(bytes));
+    const absl::StatusOr<std::string> text = DecodeText(std::move(bytes));
     if (!text.ok()) return text.status();
     status = document.ParseJson(*text);
   }
@@ -168,7 +104,7 @@ absl::StatusOr<Document> Document::Read(const std::string& path) {
 absl::Status Document::ReadGlb() {
   constexpr int64_t kHeaderBytes = 12, kChunkHeaderBytes = 8;
   constexpr uint32_t kJson = 0x4E4F534A, kBinary = 0x004E4942;
-  const absl::string_view bytes = file_;
+  const absl::string_view bytes = *file_;
   const auto cut_short = [this](int64_t wanted) {
     return absl::InvalidArgumentError(
         absl::StrFormat("has %d bytes, but its header says %d or more; it is damaged or cut short",

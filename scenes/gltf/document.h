@@ -11,6 +11,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,9 @@ class Document {
   // Errors are without the file's name. InvalidArgument names an extension that is required and not
   // known here.
   static absl::StatusOr<Document> Read(const std::string& path);
+
+  // The same of a file's bytes; others that it names are looked for in `folder`.
+  static absl::StatusOr<Document> Parse(std::string bytes, std::string folder);
 
   const Json& json() const { return json_; }
 
@@ -65,7 +69,7 @@ class Document {
   absl::StatusOr<View> Unpack(int64_t index, const Json& compression);
 
   std::string folder_;
-  std::string file_;  // GLB: keeps the chunk
+  std::unique_ptr<const std::string> file_;  // GLB: keeps the chunk
   Json json_;
   absl::string_view chunk_;  // the binary one of a GLB file
   bool has_chunk_ = false;

@@ -101,7 +101,7 @@ absl::StatusOr<std::vector<Light>> ReadLights(const Document& document, const No
     } else {
       return absl::InvalidArgumentError(
           absl::StrFormat("light \"%s\": type = \"%s\", want point, spot or directional",
-                          absl::CHexEscape(name),
+                          absl::Utf8SafeCEscape(name),
                           absl::CHexEscape(type.substr(0, 40))));
     }
     if (absl::Status status = ValidateLight(lights.back()); !status.ok()) return status;

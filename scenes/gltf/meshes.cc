@@ -1,5 +1,6 @@
 #include "scenes/gltf/meshes.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <map>
 #include <string>

@@ -98,6 +98,17 @@ absl::StatusOr<Nodes> ReadNodes(const Document& document) {
       parents[child] = i;
     }
   }
+  // Of CESIUM_RTC: where the whole file stands.
+  if (const Json* stands = Extension(document.json(), "CESIUM_RTC")) {
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+    const absl::StatusOr<bool> found =
+        NumbersIn(*stands, "center", "CESIUM_RTC", absl::MakeSpan(centre.data(), 3));
+    if (!found.ok()) return found.status();
+    for (int64_t i = 0; i < count; ++i) {
+      Eigen::Matrix4d& matrix = nodes.world_from_node[i];
+      if (parents[i] < 0) matrix.topLeftCorner<3, 4>() += centre * matrix.row(3);
+    }
+  }
   // Every node once, parents first; what is not reached from a root goes round in a circle.
   std::vector<int64_t> pending;
   for (int64_t i = count; i-- > 0;) {

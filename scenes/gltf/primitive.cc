@@ -1,5 +1,6 @@
 #include "scenes/gltf/primitive.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <utility>
 

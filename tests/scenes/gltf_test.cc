@@ -64,7 +64,7 @@ TEST_F(GltfTest, ReadsATriangle) {
 
 TEST_F(GltfTest, RefusesRequiredExtensionsThatItDoesNotKnowByName) {
   const std::string head = R"("asset":{"version":"2.0"},)";
-  for (const char* name : {"CESIUM_RTC", "FOO_bent_meshes", "KHR_gaussian_splatting", ""}) {
+  for (const char* name : {"MPEG_bent_meshes", "FOO_bent_meshes", "KHR_gaussian_splatting", ""}) {
     EXPECT_THAT(
         ReadWith({{head, absl::StrCat(head, R"("extensionsRequired":[")", name, R"("],)")}}),
         StatusIs(kInvalid, AllOf(HasSubstr("requires"), HasSubstr(name), HasSubstr("a.glb"))));
@@ -94,6 +94,16 @@ TEST_F(GltfTest, LeavesOutNodesThatAreHiddenOrNotInTheScene) {
                                            R"(,"children":[3]},{"mesh":0},{"mesh":0}])")}});
   ASSERT_THAT(two, IsOk());
   EXPECT_EQ(two->scene.triangles.size(), 2u);
+}
+
+TEST_F(GltfTest, StandsWhereItsExtensionSays) {
+  const std::string head = R"("asset":{"version":"2.0"},)";
+  const auto file = ReadWith(
+      {{head,
+        head + R"("extensionsRequired":["CESIUM_RTC"],)"
+               R"("extensions":{"CESIUM_RTC":{"center":[1215011.25,-4736313.5,4081608]}},)"}});
+  ASSERT_THAT(file, IsOk());
+  EXPECT_EQ(file->scene.WorldOf(1), Eigen::Vector3d(1215012.25, -4736313.5, 4081608));
 }
 
 TEST_F(GltfTest, RefusesWhatIsNoTree) {

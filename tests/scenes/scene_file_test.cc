@@ -11,6 +11,7 @@
 #include <random>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_replace.h"
 #include "tests/render/testing.h"
 #include "tests/testing/matchers.h"
 
@@ -175,6 +176,22 @@ TEST_F(SceneFileTest, LeavesOutWhatPlyLinesHaveBeyondTheHeader) {
   EXPECT_THAT(file->scene.triangles,
               ElementsAre(Eigen::Vector3i(0, 1, 2), Eigen::Vector3i(0, 1, 3)));
   ExpectBounds(file->scene, {0, 0, -7}, {1, 1, 0});
+}
+
+// Lines end in three ways, and words of a header stand apart by blanks or tabs.
+TEST_F(SceneFileTest, ReadsLineEndsOfEverySystem) {
+  for (const std::string& end : {std::string("\n"), std::string("\r\n"), std::string("\r")}) {
+    for (const auto& [name, text] :
+         {std::pair<std::string, std::string>{"a.ply", kPly}, {"a.obj", kObj}}) {
+      const std::string bytes = absl::StrReplaceAll(text, {{"\n", end}, {"element ", "element\t"}});
+      const auto file = ReadScene(Write(name, bytes));
+      ASSERT_THAT(file, IsOk());
+      const auto plain = ReadScene(Write(name, text));
+      ASSERT_THAT(plain, IsOk());
+      EXPECT_EQ(file->scene.vertices, plain->scene.vertices);
+      EXPECT_EQ(file->scene.triangles, plain->scene.triangles);
+    }
+  }
 }
 
 // -1 ends a strip, every other triangle of one is turned, and a repeated corner is none.
