@@ -1,6 +1,7 @@
 #include "cli/fit_summary.h"
 
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 
 #include "absl/strings/str_cat.h"
@@ -78,9 +79,11 @@ std::string ReportText(const std::string& source,
       EnergyMeaning(options.metric),
       ";\nstart: that of the map the search began with. Wrong pixels, percentiles and other "
       "methods\nneed a read-back: lightfit fit READBACK.exr.\n");
-  return absl::StrFormat("%s: %d frames; map %d x %d texels\nFinal: %s\n\n%s%s",
+  const int64_t num_frames = fits.front().light->num_frames();
+  return absl::StrFormat("%s: %d %s; map %d x %d texels\nFinal: %s\n\n%s%s",
                          source,
-                         fits.front().light->num_frames(),
+                         num_frames,
+                         num_frames == 1 ? "frame" : "frames",
                          map.width,
                          map.height,
                          MethodText(options),

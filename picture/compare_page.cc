@@ -270,7 +270,7 @@ std::vector<std::string> NotesOf(const std::vector<const ComparedRow*>& maps,
     if (known == notes.end()) {
       notes.emplace_back(map->name, words);
     } else {
-      absl::StrAppend(&known->first, ", ", map->name);
+      absl::StrAppend(&known->first, "; ", map->name);  // some names have commas
     }
   }
   std::vector<std::string> lines;

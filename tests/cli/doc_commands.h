@@ -101,6 +101,7 @@ inline std::vector<CommandBlock> AllBlocks() {
     }
   }
   std::sort(files.begin(), files.end());
+  files.erase(std::unique(files.begin(), files.end()), files.end());
   std::vector<CommandBlock> blocks;
   for (const std::filesystem::path& file : files) {
     const std::string source = std::filesystem::relative(file, root).string();

@@ -29,7 +29,7 @@ std::vector<std::string> RowOf(const std::string& light, const std::string& tabl
 
 TEST(OneMeaning, OfTheFocusedMapsFootprintInFitAndCompare) {
   const TemporaryFolder folder;
-  const std::vector<std::string> fit = {"fit", kYard, "--lights", kYardLights};
+  const std::vector<std::string> fit = {"fit", kYard, "--lights", kYardLights, "--legend"};
   const auto run = [&](std::vector<std::string> more) {
     more.insert(more.begin(), fit.begin(), fit.end());
     const ProcessResult result = RunLightfit(more);
@@ -51,6 +51,7 @@ TEST(OneMeaning, OfTheFocusedMapsFootprintInFitAndCompare) {
                                              kYard,
                                              "--lights",
                                              kYardLights,
+                                             "--legend",
                                              "--map",
                                              "1024x1024",
                                              "--matrix",

@@ -63,9 +63,10 @@ TEST(Summarize, FitOfOneFrameIsThatOfItsReadBack) {
   EXPECT_EQ(
       RunLightfit(Joined({"fit", kYard, "--lights", kYardLights, "--json", direct}, l2)).exit_code,
       0);
-  const ProcessResult fit = RunLightfit({"fit", "--summary", summary, "--json", from_sum});
+  const ProcessResult fit =
+      RunLightfit({"fit", "--summary", summary, "--json", from_sum, "--legend"});
   EXPECT_EQ(fit.exit_code, 0) << fit.err;
-  EXPECT_THAT(fit.out, AllOf(HasSubstr("1 frames"), HasSubstr("need a read-back")));
+  EXPECT_THAT(fit.out, AllOf(HasSubstr(": 1 frame; "), HasSubstr("need a read-back")));
   v1::FitResult expected = ReadResult(direct), result = ReadResult(from_sum);
   ASSERT_EQ(result.lights_size(), 3);
   EXPECT_EQ(result.readback().source(), summary);
