@@ -9,7 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "cli/command_line/file_kinds.h"
-#include "cli/command_line/standard_streams.h"
+#include "cli/flags/standard_streams.h"
 
 namespace lightfit::cli {
 namespace {

@@ -8,7 +8,7 @@
 #include "absl/strings/str_join.h"
 #include "base/suggest.h"
 #include "base/verbose.h"
-#include "cli/command_line/standard_streams.h"
+#include "cli/flags/standard_streams.h"
 #include "io/camera_file.h"
 #include "optimizer/readback/readback.h"
 

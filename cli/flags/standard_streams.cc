@@ -1,4 +1,4 @@
-#include "cli/command_line/standard_streams.h"
+#include "cli/flags/standard_streams.h"
 
 #include <unistd.h>
 
