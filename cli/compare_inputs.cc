@@ -7,8 +7,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "base/suggest.h"
-#include "cli/command_line/standard_streams.h"
 #include "cli/flags/scene_needs.h"
+#include "cli/flags/standard_streams.h"
 #include "render/sight.h"
 
 namespace lightfit::cli {

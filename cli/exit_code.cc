@@ -6,7 +6,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "cli/command_line/option_words.h"
-#include "cli/command_line/standard_streams.h"
+#include "cli/flags/standard_streams.h"
 
 namespace lightfit::cli {
 namespace {

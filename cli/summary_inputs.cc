@@ -6,9 +6,9 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "base/text_file.h"
-#include "cli/command_line/standard_streams.h"
 #include "cli/flags/choices.h"
 #include "cli/flags/fit_inputs.h"
+#include "cli/flags/standard_streams.h"
 #include "jobs/fit_summary.h"
 
 namespace lightfit::cli {

@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
@@ -29,9 +30,12 @@ std::string ZshAction(const OptionKind& kind) {
   if (!kind.choices.empty()) return absl::StrCat("(", absl::StrJoin(kind.choices, " "), ")");
   if (kind.has_file && (kind.has_list || kind.extensions.empty())) return "_files";
   if (kind.has_file) {
-    std::vector<std::string> names;
-    for (const std::string& extension : kind.extensions) names.push_back("*" + extension);
-    return absl::StrCat("_files -g \"(#i)(", absl::StrJoin(names, "|"), ")\"");
+    std::vector<std::string> endings;
+    for (const std::string& extension : kind.extensions) {
+      endings.push_back(extension.substr(1));
+      endings.push_back(absl::AsciiStrToUpper(endings.back()));
+    }
+    return absl::StrCat("_files -g \"*.(", absl::StrJoin(endings, "|"), ")\"");
   }
   return kind.has_folder ? "_files -/" : " ";
 }
@@ -97,7 +101,8 @@ std::string ZshCompletion(const CLI::App& app) {
       "#compdef lightfit\n# Completion of lightfit for zsh, as `lightfit completion zsh` prints "
       "it.\n\n_lightfit() {\n  local curcontext=\"$curcontext\" state line\n  typeset -A opt_args\n"
       "  _arguments -C '(- *)'{-h,--help}'[Print this help]' \\\n"
-      "    '(- *)'{-V,--version}'[Print the version]' '1:verb:->verb' '*::argument:->argument'\n"
+      "    '(- *)'{-V,--version}'[Print the version]' '(-)1:verb:->verb' \\\n    "
+      "'(-)*::argument:->argument'\n"
       "  case $state in\n    verb)\n      local -a verbs\n      verbs=(\n",
       verbs,
       "        'help:Print the help of a verb'\n      )\n      _describe verb verbs ;;\n"

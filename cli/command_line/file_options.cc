@@ -9,7 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "cli/command_line/file_kinds.h"
-#include "cli/command_line/standard_streams.h"
+#include "cli/flags/standard_streams.h"
 
 namespace lightfit::cli {
 namespace {
@@ -56,6 +56,7 @@ std::string Prepare(const CLI::App& verb,
                     std::string* value) {
   const size_t name_end = kind.has_name ? value->find('=') + 1 : 0;
   const std::string path = value->substr(name_end);
+  if (path.empty()) return "is empty, want the name of a file";
   if (path != kDash) return kind.is_output ? CheckExtension(verb, kind, path) : "";
   if (kind.is_output && (kind.extensions.empty() || kind.has_folder)) {
     return absl::StrCat("cannot go to standard output, want the name of a ",

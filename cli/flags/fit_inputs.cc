@@ -10,7 +10,7 @@
 #include "base/suggest.h"
 #include "base/text_file.h"
 #include "base/verbose.h"
-#include "cli/command_line/standard_streams.h"
+#include "cli/flags/standard_streams.h"
 #include "io/camera_file.h"
 #include "optimizer/readback/readback.h"
 

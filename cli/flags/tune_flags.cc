@@ -3,8 +3,8 @@
 #include <CLI/CLI.hpp>
 
 #include "absl/strings/str_cat.h"
-#include "cli/command_line/standard_streams.h"
 #include "cli/flags/choice_option.h"
+#include "cli/flags/standard_streams.h"
 
 namespace lightfit::cli {
 namespace {

@@ -47,6 +47,28 @@ foreach(file share/doc/lightfit/LICENSE)
   endif()
 endforeach()
 
+# With the program comes what shells complete by and the manual: what it prints itself.
+set(program ${WORK_DIR}/prefix/bin/lightfit)
+if(EXISTS ${program})
+  foreach(pair "share/bash-completion/completions/lightfit=completion bash"
+      "share/zsh/site-functions/_lightfit=completion zsh"
+      "share/fish/vendor_completions.d/lightfit.fish=completion fish"
+      "share/man/man1/lightfit.1=man" "share/man/man1/lightfit-fit.1=man fit")
+    string(REGEX MATCH "(.*)=(.*)" pair ${pair})
+    set(file ${WORK_DIR}/prefix/${CMAKE_MATCH_1})
+    separate_arguments(words UNIX_COMMAND ${CMAKE_MATCH_2})
+    execute_process(COMMAND ${program} ${words} OUTPUT_VARIABLE printed)
+    if(NOT EXISTS ${file})
+      message(FATAL_ERROR "${file} is not installed")
+    endif()
+    file(READ ${file} installed)
+    if(NOT installed STREQUAL printed)
+      message(FATAL_ERROR "${file} is not what lightfit ${words} prints")
+    endif()
+  endforeach()
+  message(STATUS "completion and manual: ok")
+endif()
+
 # Without Ceres an engine loads none of what comes with it.
 if(NOT LIGHTFIT_WITH_CERES)
   execute_process(COMMAND ldd ${WORK_DIR}/build/consumer OUTPUT_VARIABLE libraries)

@@ -55,6 +55,12 @@ TEST(Streams, AShotIsAListOfPaths) {
                shot.LightsPath() + "' -q --per-frame -o '" + shot.Output() + "'");
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(ReadResult(shot.ResultPath("per-frame", 1)).lights(0).status().code(), 0);
+  // Without a folder of its own.
+  const ProcessResult named =
+      RunShell("cd '" + shot.Path("") + "' && ls walk/*.exr | \"$lightfit\" " +
+               "shot - --lights lights.json -q --per-frame");
+  EXPECT_EQ(named.exit_code, 0) << named.err;
+  EXPECT_TRUE(std::filesystem::exists(shot.Path("shot_lightfit/shot.csv")));
 }
 
 TEST(Streams, MatricesComeFromAPipe) {
@@ -90,6 +96,14 @@ TEST(Streams, EachIsThatOfOneOptionAlone) {
           "standard input is that of --lights already");
   refuses({"shot", kYard, "--lights", kYardLights, "-o", "-"}, "want the name of a folder");
   refuses({"tune", "generate", "--journal", "-"}, "want the name of a file");
+}
+
+TEST(Streams, AnEmptyNameIsNone) {
+  for (const char* option : {"--json", "--picture", "--camera"}) {
+    const ProcessResult result = RunLightfit({"fit", kYard, "--lights", kYardLights, option, ""});
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.err, HasSubstr(std::string(option) + ": is empty, want the name of a file"));
+  }
 }
 
 TEST(Streams, NothingStaysBehind) {

@@ -1,4 +1,4 @@
-#include "cli/command_line/standard_streams.h"
+#include "cli/flags/standard_streams.h"
 
 #include <unistd.h>
 
@@ -132,7 +132,8 @@ absl::StatusOr<std::string> TakeStandardInput(const std::string& flag, bool is_l
   char start[64] = {};
   std::ifstream(spool, std::ios::binary).read(start, sizeof(start));
   std::string extension = ExtensionOf(absl::string_view(start, sizeof(start)));
-  if (is_list && extension.empty()) {
+  const bool is_paths = is_list && extension.empty();
+  if (is_paths) {
     extension = ".txt";
     const absl::StatusOr<std::string> list = ReadTextFile(spool);
     if (!list.ok()) return list.status();
@@ -140,7 +141,9 @@ absl::StatusOr<std::string> TakeStandardInput(const std::string& flag, bool is_l
     if (!status.ok()) return status;
   }
   std::error_code error;
-  const std::string path = absl::StrCat(spool, extension);
+  // Results are named after a list.
+  const std::string path =
+      absl::StrCat(is_paths ? absl::StrCat(state.folder, "/shot") : spool, extension);
   if (path != spool) std::filesystem::rename(spool, path, error);
   state.input = {flag, path};
   return path;

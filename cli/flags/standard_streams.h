@@ -1,4 +1,4 @@
-// cli/command_line/standard_streams.h
+// cli/flags/standard_streams.h
 //
 // `-` for standard input and output, of any option that takes a file and of any format: what is
 // read is first put into a file, and what is written comes from one, in a folder that goes with the
