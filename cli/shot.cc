@@ -60,6 +60,7 @@ int RunShotVerb(const ShotFlags& flags) {
   status = MakeShotFolders(*job);
   if (!status.ok()) return Fail(kExitBadInput, status);
 
+  for (const std::string& note : job->notes) PrintWarning(note);
   ShotContext context(*job);
   if (!job->quiet) PrintResuming(context);
   status = RunShot(&context);

@@ -1,6 +1,7 @@
 #include "io/lights_file.h"
 
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "absl/strings/numbers.h"
@@ -9,12 +10,20 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "base/text_file.h"
+#include "io/frames/light_frames.h"
 #include "wire/light_proto.h"
 #include "wire/proto_json.h"
 
 namespace lightfit {
 
 absl::StatusOr<std::vector<Light>> ParseLightsJson(absl::string_view json) {
+  const absl::StatusOr<std::optional<LightFrames>> frames = LightFrames::Parse(json);
+  if (!frames.ok()) return frames.status();
+  if (frames->has_value()) {
+    return absl::InvalidArgumentError(
+        "frames: its lights move, and the lights of one frame are wanted here: give each with "
+        "--light, or a file without frames");
+  }
   v1::LightList list;
   if (absl::Status status = JsonToProto(json, list); !status.ok()) return status;
   if (list.lights().empty()) {

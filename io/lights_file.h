@@ -6,6 +6,8 @@
 //       a lightfit.v1.LightList in protobuf JSON (unknown fields are ignored), or "sun=sun:0,0,-1".
 // Out:  lights, valid, with distinct names and shadow_bit 0, 1, ... in the order of the file.
 //
+// Files of lights that move, with "frames", are read by io/frames/light_frames.h and refused here.
+//
 // Positions are in world units; a direction is the one in which the light travels, of any length.
 #pragma once
 

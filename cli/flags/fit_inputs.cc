@@ -7,7 +7,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "base/suggest.h"
-#include "io/camera_file.h"
+#include "cli/flags/frame_inputs.h"
+#include "jobs/shot/judge.h"
 #include "optimizer/readback/readback.h"
 
 namespace lightfit::cli {
@@ -44,7 +45,7 @@ absl::StatusOr<std::vector<Light>> ReadFitLights(const FitFlags& flags) {
   return ChooseLights(*lights, flags.only);
 }
 
-absl::StatusOr<ReadbackExrOptions> ReadbackOptionsOf(const FitFlags& flags) {
+ReadbackExrOptions ReadbackOptionsOf(const FitFlags& flags) {
   ReadbackExrOptions options;
   options.depth_kind = flags.depth_kind.value_or(DepthKind::kCameraZ);
   options.depth_channel = flags.depth_channel;
@@ -60,13 +61,6 @@ absl::StatusOr<ReadbackExrOptions> ReadbackOptionsOf(const FitFlags& flags) {
     options.mapped_channel_format = flags.mapped_channel_format;
   }
   options.camera_exr = flags.camera_exr;
-  if (flags.camera_path.empty()) return options;
-  absl::StatusOr<StatedCamera> file = ReadCameraFile(flags.camera_path, flags.frame);
-  if (!file.ok()) return file.status();
-  if (!flags.depth_kind.has_value() && file->depth_kind.has_value()) {
-    options.depth_kind = *file->depth_kind;
-  }
-  options.camera = file->camera;
   return options;
 }
 
@@ -78,14 +72,18 @@ Readback FitInputs::View() const {
 
 absl::StatusOr<FitInputs> ReadFitInputs(const FitFlags& flags) {
   FitInputs inputs;
-  absl::StatusOr<std::vector<Light>> lights = ReadFitLights(flags);
+  const std::string& path = flags.readback_path;
+  const absl::StatusOr<FrameInputs> frame = FrameInputs::ForFile(flags, path);
+  if (!frame.ok()) return frame.status();
+  absl::StatusOr<FrameLights> lights = frame->LightsOf(path, frame->number());
   if (!lights.ok()) return lights.status();
-  inputs.lights = *std::move(lights);
-  const absl::StatusOr<ReadbackExrOptions> options = ReadbackOptionsOf(flags);
+  inputs.lights = std::move(lights->lights);
+  const absl::StatusOr<ReadbackExrOptions> options = frame->ReadingOf(path, frame->number());
   if (!options.ok()) return options.status();
-  absl::StatusOr<ReadbackFile> file = ReadReadbackExr(flags.readback_path, inputs.lights, *options);
+  absl::StatusOr<ReadbackFile> file = ReadReadbackExr(path, inputs.lights, *options);
   if (!file.ok()) return file.status();
   inputs.file = *std::move(file);
+  SetAbsent(lights->absent, frame->number(), inputs.lights, &inputs.file);
   if (!flags.cover_readback_path.empty()) {
     absl::StatusOr<FineCoverFile> fine =
         ReadFineCoverExr(flags.cover_readback_path, inputs.lights, *options, inputs.file);

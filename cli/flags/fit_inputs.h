@@ -29,10 +29,10 @@ struct FitInputs {
 
 absl::StatusOr<FitInputs> ReadFitInputs(const FitFlags& flags);
 
-// Parts of it, for verbs that read many read-backs: the lights; and how the channels and the camera
-// of a read-back are to be understood.
+// Parts of it: the lights, which stand still; and how the channels of a read-back are to be
+// understood. Cameras, and lights that move: cli/flags/frame_inputs.h.
 absl::StatusOr<std::vector<Light>> ReadFitLights(const FitFlags& flags);
-absl::StatusOr<ReadbackExrOptions> ReadbackOptionsOf(const FitFlags& flags);
+ReadbackExrOptions ReadbackOptionsOf(const FitFlags& flags);
 
 // Those of the lights that `only` names, in their own order; all when it names none.
 absl::StatusOr<std::vector<Light>> ChooseLights(const std::vector<Light>& lights,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/text_file.h"
 #include "io/lights_file.h"
 #include "wire/light_proto.h"
 
@@ -34,8 +35,11 @@ void DeclareLightFlags(CLI::App* app, LightFlags* flags, const std::string& grou
 absl::StatusOr<std::vector<Light>> ReadLights(const LightFlags& flags) {
   std::vector<Light> lights;
   if (!flags.path.empty()) {
-    absl::StatusOr<std::vector<Light>> from_file = ReadLightsFile(flags.path);
-    if (!from_file.ok()) return from_file.status();
+    absl::StatusOr<std::vector<Light>> from_file =
+        flags.json.empty() ? ReadLightsFile(flags.path) : ParseLightsJson(flags.json);
+    if (!from_file.ok()) {
+      return flags.json.empty() ? from_file.status() : InFile(flags.path, from_file.status());
+    }
     lights = *std::move(from_file);
   }
   for (Light light : flags.extra) {
