@@ -10,6 +10,7 @@
 #include "calls/request_fields.h"
 #include "calls/request_options.h"
 #include "io/summary_file.h"
+#include "jobs/add_summaries.h"
 #include "jobs/fit_summary.h"
 #include "wire/options_proto.h"
 #include "wire/summary_proto.h"
@@ -20,18 +21,13 @@ namespace {
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 
-// Adds the next summary of the request to `sum`, which is empty at first.
-absl::Status AddTo(std::optional<SummarySet>* sum,
+// Adds the next summary of the request.
+absl::Status AddTo(SummaryAdder* sum,
                    const std::string& field,
-                   absl::StatusOr<SummarySet> set) {
+                   const absl::StatusOr<SummarySet>& set) {
   if (StopRequested()) return StoppedError();
   if (!set.ok()) return InFile(field, set.status());
-  if (!sum->has_value()) {
-    *sum = *std::move(set);
-    return absl::OkStatus();
-  }
-  const absl::Status status = AddToSet(*set, &**sum);
-  return status.ok() ? status : InFile(field, status);
+  return sum->Add(field, *set);
 }
 
 std::string ValueText(const Message& message, const FieldDescriptor* field) {
@@ -92,7 +88,7 @@ absl::StatusOr<SummarySet> SummariesOfRequest(
                         count,
                         limits.max_summaries));
   }
-  std::optional<SummarySet> sum;
+  SummaryAdder sum;
   for (int i = 0; i < summaries.size(); ++i) {
     absl::Status status =
         AddTo(&sum, absl::StrCat("summaries[", i, "]"), SummarySetFromProto(summaries[i]));
@@ -103,7 +99,7 @@ absl::StatusOr<SummarySet> SummariesOfRequest(
         AddTo(&sum, absl::StrCat("summary_files[", i, "]"), ParseSummarySet(summary_files[i]));
     if (!status.ok()) return status;
   }
-  return *std::move(sum);
+  return *sum.sum();
 }
 
 absl::StatusOr<FitOptions> OptionsOfSummaryRequest(const v1::FitOptions& asked,

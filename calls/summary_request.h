@@ -18,7 +18,8 @@
 
 namespace lightfit {
 
-// InvalidArgument names the summary, as "summary_files[3]: ...", and when there is none;
+// InvalidArgument names the summary, as "summary_files[3]: ...", both where a frame is in two of
+// them, and when there is none;
 // ResourceExhausted above limits.max_summaries; Cancelled.
 absl::StatusOr<SummarySet> SummariesOfRequest(
     const google::protobuf::RepeatedPtrField<v1::SummaryFile>& summaries,

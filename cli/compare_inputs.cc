@@ -9,6 +9,7 @@
 #include "base/suggest.h"
 #include "cli/flags/scene_needs.h"
 #include "cli/flags/standard_streams.h"
+#include "optimizer/tracking/keep_matrix.h"
 #include "render/sight.h"
 
 namespace lightfit::cli {
@@ -95,16 +96,16 @@ absl::StatusOr<Camera> NextCamera(const CompareFlags& flags,
     return Stepped(screen.camera, step);
   }
   SceneFlags scene = flags.scene;
-  scene.frame = *flags.crawl.next_frame;
+  scene.frame = FrameNumber::Whole(*flags.crawl.next_frame);
   if (scene.view.has_value()) {
     return absl::InvalidArgumentError(
         absl::StrCat("--next-frame ",
-                     scene.frame,
+                     scene.frame->Text(),
                      ": --camera ",
                      scene.camera,
                      " is a single view, want --camera FILE with frames; or --camera-step"));
   }
-  *title = absl::StrCat("frame ", scene.frame, " of ", scene.camera);
+  *title = absl::StrCat("frame ", scene.frame->Text(), " of ", scene.camera);
   return MakeViewCamera(scene, screen.camera.width, screen.camera.height);
 }
 
@@ -140,9 +141,21 @@ absl::StatusOr<CompareStage> NextReadbackStage(const CompareFlags& flags, Compar
   }
   FitFlags fit = ReadbackFlags(flags);
   fit.readback_path = flags.crawl.next_readback_path;
-  fit.frame = flags.crawl.next_frame.value_or(flags.scene.frame + 1);
+  if (flags.crawl.next_frame.has_value()) {
+    fit.frame = FrameNumber::Whole(*flags.crawl.next_frame);
+  } else if (fit.frame.has_value()) {
+    fit.frame->millionths += FrameNumber::kUnit;
+  }
   absl::StatusOr<FitInputs> readback = ReadFitInputs(fit);
   if (!readback.ok()) return readback.status();
+  for (size_t i = 0; i < inputs->lights.size() && i < readback->lights.size(); ++i) {
+    if (IsSameLight(inputs->lights[i], readback->lights[i])) continue;
+    return absl::InvalidArgumentError(absl::StrCat(
+        "light \"",
+        inputs->lights[i].name,
+        "\": it moves to the next frame, and then its shadows do whatever its texels do: there is "
+        "no crawl to measure; leave it out with --only"));
+  }
   inputs->next_readback = std::make_unique<FitInputs>(*std::move(readback));
   inputs->next_title = flags.crawl.next_readback_path;
   for (std::string& warning : inputs->next_readback->notes.Warnings()) {

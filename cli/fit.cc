@@ -18,6 +18,7 @@
 #include "cli/exit_code.h"
 #include "cli/fit_summary.h"
 #include "cli/flags/fit_inputs.h"
+#include "cli/flags/frame_inputs.h"
 #include "cli/flags/standard_streams.h"
 #include "cli/reports/fit_csv.h"
 #include "cli/reports/fit_report.h"
@@ -253,7 +254,7 @@ int RunFit(const FitFlags& flags) {
   if (!status.ok()) return Fail(kExitUsage, status);
   status = CheckOutputs(flags);
   if (!status.ok()) return Fail(kExitBadInput, status);
-  const absl::StatusOr<std::vector<ListedLight>> lights = ListFitLights(flags);
+  const absl::StatusOr<std::vector<ListedLight>> lights = ListFrameLights(flags);
   if (!lights.ok()) return Fail(kExitBadInput, lights.status());
   absl::StatusOr<FitInputs> inputs;  // of the first lights
   Outcome outcome;

@@ -8,7 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "cli/exit_code.h"
-#include "cli/flags/fit_inputs.h"
+#include "cli/flags/frame_inputs.h"
 #include "cli/reports/legend.h"
 #include "cli/reports/shot_report.h"
 #include "jobs/shot/run.h"
@@ -79,6 +79,7 @@ int RunShotVerb(const ShotFlags& flags) {
         "--as-published: per-frame and tracked only, as the published algorithm has no form that "
         "fits one matrix to a whole shot");
   }
+  for (const std::string& note : job->notes) PrintWarning(note);
   ShotContext context(*job);
   if (!job->quiet) PrintResuming(context);
   status = RunShot(&context);
@@ -93,8 +94,7 @@ int RunShotVerb(const ShotFlags& flags) {
   for (const std::string& note : context.notes) PrintWarning(note);
   const std::vector<std::string> errors = ShotErrors(context);
   for (const std::string& error : errors) PrintError(error);
-  const absl::StatusOr<std::vector<ListedLight>> lights = ListFitLights(flags.fit);
-  const int num_unusable = lights.ok() ? PrintUnusable(*lights, "matrix") : 0;
+  const int num_unusable = PrintUnusableLights(flags.fit, "matrix");
   if (errors.empty() && num_unusable == 0) return kExitOk;
   return HasAnswer(context.rows) ? kExitIncomplete : kExitBadInput;
 }

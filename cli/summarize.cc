@@ -20,10 +20,13 @@
 #include "base/text_file.h"
 #include "base/version.h"
 #include "cli/exit_code.h"
-#include "cli/flags/fit_inputs.h"
+#include "cli/flags/frame_inputs.h"
 #include "cli/summary_inputs.h"
+#include "cli/summary_list.h"
 #include "io/readback_notes.h"
+#include "jobs/add_summaries.h"
 #include "jobs/fit_summary.h"
+#include "jobs/shot/judge.h"
 #include "optimizer/fit.h"
 #include "wire/plan_proto.h"
 #include "wire/result_json.h"
@@ -39,8 +42,11 @@ constexpr char kExamples[] =
     "\n"
     "A summary has what fit needs to know of any number of frames, about two kilobytes per light.\n"
     "The same frames give the same file to the last byte in whatever order and groups they are\n"
-    "added; a frame that is given twice counts twice. Lights, metric and cover must be the same.\n"
-    "With several read-backs --frame is that of the first, and the others count on from it.\n"
+    "added. Lights, metric and cover must be the same; a frame that is in two of the inputs is\n"
+    "refused, and so is an output among the inputs. Folders and patterns ('shot.####.exr') are\n"
+    "read-backs, as for shot. With several read-backs --frame is that of the first, and the "
+    "others\n"
+    "count on from it by their numbers.\n"
     "The l1 metrics weigh samples by a map: each frame's own best one, or for a closer fit of a\n"
     "whole shot the maps of a first round, --weigh-by shot.json.";
 
@@ -72,21 +78,23 @@ struct SharedNotes {
 
 struct Job {
   const SummarizeFlags& flags;
-  std::vector<Light> lights;  // of the read-backs
+  std::vector<SummaryInput> inputs;
   std::optional<MatricesByLight> weigh_by;
+
+  bool HasReadbacks() const {
+    return std::any_of(inputs.begin(), inputs.end(), [](const SummaryInput& input) {
+      return !input.is_summary();
+    });
+  }
 };
 
-absl::StatusOr<Job> JobOf(const SummarizeFlags& flags, const std::vector<bool>& is_summary) {
-  Job job = {flags, {}, {}};
-  const bool has_readbacks =
-      std::find(is_summary.begin(), is_summary.end(), false) != is_summary.end();
-  if (has_readbacks) {
-    absl::StatusOr<std::vector<Light>> lights = ReadFitLights(flags.fit);
-    if (!lights.ok()) return lights.status();
-    job.lights = *std::move(lights);
-  }
+absl::StatusOr<Job> JobOf(const SummarizeFlags& flags) {
+  absl::StatusOr<std::vector<SummaryInput>> inputs =
+      ListSummaryInputs(flags.inputs, flags.output_path, flags.fit);
+  if (!inputs.ok()) return inputs.status();
+  Job job = {flags, *std::move(inputs), {}};
   if (flags.weigh_by_path.empty()) return job;
-  if (!has_readbacks) {
+  if (!job.HasReadbacks()) {
     return absl::InvalidArgumentError(
         "--weigh-by: the samples of summary files are weighed already, leave it out");
   }
@@ -116,9 +124,9 @@ absl::StatusOr<Eigen::Matrix4d> WeighingMap(const MatricesByLight& matrices, con
 
 LightSummary SummarizeLight(const Job& job,
                             const ReadbackFile& file,
+                            const Light& light,
                             size_t light_index,
                             const std::string& frame) {
-  const Light& light = job.lights[light_index];
   const FitOptions& options = job.flags.fit.options;
   std::optional<Eigen::Matrix4d> weighed_in;
   const auto summarize = [&]() -> absl::StatusOr<Summary> {
@@ -137,55 +145,49 @@ LightSummary SummarizeLight(const Job& job,
   return summary;
 }
 
-// `frame` counts the read-backs from 0.
 absl::StatusOr<SummarySet> SummarizeReadback(const Job& job,
-                                             const std::string& path,
-                                             int frame,
+                                             const FrameToSum& frame,
+                                             size_t place,
                                              SharedNotes* notes) {
-  FitFlags flags = job.flags.fit;
-  flags.frame += frame;
-  const absl::StatusOr<ReadbackExrOptions> options = ReadbackOptionsOf(flags);
-  if (!options.ok()) return options.status();
-  absl::StatusOr<ReadbackFile> file = ReadReadbackExr(path, job.lights, *options);
+  if (!frame.exr.ok()) return frame.exr.status();
+  const std::string& path = frame.path;
+  absl::StatusOr<ReadbackFile> file = ReadReadbackExr(path, frame.lights, *frame.exr);
   if (!file.ok()) return file.status();
   if (absl::Status status = ValidateReadback(file->View()); !status.ok()) {
     return InFile(path, status);
   }
   {
     const std::lock_guard<std::mutex> lock(notes->mutex);
-    notes->notes.Add(static_cast<size_t>(frame), path, *file);
+    notes->notes.Add(place, path, *file);
   }
+  SetAbsent(frame.absent_lights, frame.number.value_or(FrameNumber{}), frame.lights, &*file);
   // Folders differ between the machines of a farm, and would make files differ.
   const std::string name = std::filesystem::path(path).filename().string();
   for (absl::Status& status : file->light_status) {
     status = absl::Status(status.code(), absl::StrReplaceAll(status.message(), {{path, name}}));
   }
   std::vector<LightSummary> lights;
-  for (size_t i = 0; i < job.lights.size(); ++i) {
-    lights.push_back(SummarizeLight(job, *file, i, name));
+  for (size_t i = 0; i < frame.lights.size(); ++i) {
+    lights.push_back(SummarizeLight(job, *file, frame.lights[i], i, name));
   }
-  return MakeSummarySet(flags.options, std::move(lights));
+  return MakeSummarySet(
+      job.flags.fit.options, std::move(lights), IdentityOf(file->View(), frame.number));
 }
 
 // Results in the order of the inputs.
-std::vector<absl::StatusOr<SummarySet>> SummarizeInputs(const Job& job,
-                                                        const std::vector<bool>& is_summary,
-                                                        SharedNotes* notes) {
-  const std::vector<std::string>& inputs = job.flags.inputs;
-  std::vector<int> frames(inputs.size(), 0);  // read-backs before this input
-  for (size_t i = 1; i < inputs.size(); ++i) {
-    frames[i] = frames[i - 1] + (is_summary[i - 1] ? 0 : 1);
-  }
-  std::vector<absl::StatusOr<SummarySet>> sets(inputs.size());
-  const auto count = static_cast<int>(inputs.size());
+std::vector<absl::StatusOr<SummarySet>> SummarizeInputs(const Job& job, SharedNotes* notes) {
+  std::vector<absl::StatusOr<SummarySet>> sets(job.inputs.size());
+  const auto count = static_cast<int>(sets.size());
   Progress progress(count, job.flags.fit.quiet);
   std::mutex progress_mutex;
   ParallelFor(count, /*chunk=*/1, NumProcessors(), [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
-      sets[i] = is_summary[i] ? ReadSummary(inputs[i], job.flags.fit.only)
-                              : SummarizeReadback(job, inputs[i], frames[i], notes);
+      const SummaryInput& input = job.inputs[i];
+      sets[i] = input.is_summary()
+                    ? ReadSummary(input.path, job.flags.fit.only)
+                    : SummarizeReadback(job, *input.frame, static_cast<size_t>(i), notes);
       const std::lock_guard<std::mutex> lock(progress_mutex);
-      progress.Begin(absl::StrCat("summarising ", inputs[i]));
+      progress.Begin(absl::StrCat("summarising ", input.path));
       progress.Advance();
     }
   });
@@ -194,23 +196,22 @@ std::vector<absl::StatusOr<SummarySet>> SummarizeInputs(const Job& job,
 
 // The sum of what could be read; what could not is named on stderr and counted.
 absl::StatusOr<SummarySet> SumOf(const std::vector<absl::StatusOr<SummarySet>>& sets,
-                                 const std::vector<std::string>& inputs,
+                                 const std::vector<SummaryInput>& inputs,
                                  int* num_failed) {
-  std::optional<SummarySet> sum;
+  SummaryAdder adder;
   for (size_t i = 0; i < sets.size(); ++i) {
     if (!sets[i].ok()) {
       PrintError(absl::StrCat("left out: ", sets[i].status().message()));
       ++*num_failed;
-    } else if (!sum.has_value()) {
-      sum = *sets[i];
-    } else if (absl::Status status = AddToSet(*sets[i], &*sum); !status.ok()) {
-      return InFile(inputs[i], status);
+    } else if (absl::Status status = adder.Add(inputs[i].path, *sets[i]); !status.ok()) {
+      return status;
     }
   }
-  if (!sum.has_value()) {
+  if (!adder.sum().has_value()) {
     return absl::InvalidArgumentError("no input could be used, so nothing is written");
   }
-  return *std::move(sum);
+  for (const std::string& note : adder.Notes()) PrintWarning(note);
+  return *adder.sum();
 }
 
 std::string CountText(int64_t count, const char* noun) {
@@ -238,14 +239,14 @@ std::string ReportText(const SummarySet& sum) {
 // have been reported when that was made.
 bool PrintMissingFrames(const SummarySet& sum,
                         const std::vector<absl::StatusOr<SummarySet>>& sets,
-                        const std::vector<bool>& is_summary) {
+                        const std::vector<SummaryInput>& inputs) {
   bool is_complete = true;
   for (size_t l = 0; l < sum.lights.size(); ++l) {
     if (sum.lights[l].num_frames_without == 0) continue;
     bool is_new = false;
     for (size_t i = 0; i < sets.size(); ++i) {
-      is_new =
-          is_new || (!is_summary[i] && sets[i].ok() && sets[i]->lights[l].num_frames_without > 0);
+      is_new = is_new || (!inputs[i].is_summary() && sets[i].ok() &&
+                          sets[i]->lights[l].num_frames_without > 0);
     }
     const std::string text = MissingFramesText(sum.lights[l]);
     is_new ? PrintError(text) : PrintWarning(text);
@@ -259,7 +260,9 @@ bool PrintMissingFrames(const SummarySet& sum,
 std::function<int()> DeclareSummarize(CLI::App* app) {
   const auto flags = std::make_shared<SummarizeFlags>();
   const std::string group = "Input";
-  app->add_option("inputs", flags->inputs, "OpenEXR files, and summary files to add")
+  app->add_option("inputs",
+                  flags->inputs,
+                  "OpenEXR files, folders or patterns of them, and summary files to add")
       ->required()
       ->type_name("READBACK.exr|FILE.summary");
   DeclareLightFlags(app, &flags->fit.lights, group);
@@ -292,16 +295,14 @@ int RunSummarize(const SummarizeFlags& flags) {
   if (absl::Status status = CheckWritable("-o", flags.output_path); !status.ok()) {
     return Fail(kExitBadInput, status);
   }
-  std::vector<bool> is_summary;
-  for (const std::string& input : flags.inputs) is_summary.push_back(IsSummaryFile(input));
-  const absl::StatusOr<Job> job = JobOf(flags, is_summary);
+  const absl::StatusOr<Job> job = JobOf(flags);
   if (!job.ok()) return Fail(kExitBadInput, job.status());
 
   SharedNotes notes;
-  const std::vector<absl::StatusOr<SummarySet>> sets = SummarizeInputs(*job, is_summary, &notes);
+  const std::vector<absl::StatusOr<SummarySet>> sets = SummarizeInputs(*job, &notes);
   PrintWarnings(notes.notes.Warnings());
   int num_failed = 0;
-  const absl::StatusOr<SummarySet> sum = SumOf(sets, flags.inputs, &num_failed);
+  const absl::StatusOr<SummarySet> sum = SumOf(sets, job->inputs, &num_failed);
   if (!sum.ok()) return Fail(kExitBadInput, sum.status());
   absl::Status status = CheckHeld(flags.fit, sum->options);
   if (status.ok()) {
@@ -314,11 +315,8 @@ int RunSummarize(const SummarizeFlags& flags) {
     std::fputs(ReportText(*sum).c_str(), stdout);
   }
   std::fflush(stdout);
-  const bool is_complete = PrintMissingFrames(*sum, sets, is_summary);
-  if (!job->lights.empty()) {
-    const absl::StatusOr<std::vector<ListedLight>> lights = ListFitLights(flags.fit);
-    if (lights.ok()) num_failed += PrintUnusable(*lights, "summary");
-  }
+  const bool is_complete = PrintMissingFrames(*sum, sets, job->inputs);
+  if (job->HasReadbacks()) num_failed += PrintUnusableLights(flags.fit, "summary");
   if (num_failed == 0 && is_complete) return kExitOk;
   const bool has_samples =
       std::any_of(sum->lights.begin(), sum->lights.end(), [](const LightSummary& light) {

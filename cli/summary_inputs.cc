@@ -6,10 +6,13 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "base/text_file.h"
+#include "cli/exit_code.h"
 #include "cli/flags/choices.h"
 #include "cli/flags/fit_inputs.h"
 #include "cli/flags/standard_streams.h"
+#include "jobs/add_summaries.h"
 #include "jobs/fit_summary.h"
+#include "jobs/frames/frame_pattern.h"
 
 namespace lightfit::cli {
 
@@ -30,15 +33,25 @@ absl::StatusOr<SummarySet> ReadSummary(const std::string& path,
   return set;
 }
 
-absl::StatusOr<SummarySet> ReadSummaries(const std::vector<std::string>& paths,
+absl::StatusOr<SummarySet> ReadSummaries(const std::vector<std::string>& words,
                                          const std::vector<std::string>& only) {
-  absl::StatusOr<SummarySet> sum = ReadSummary(paths.front(), only);
-  for (size_t i = 1; i < paths.size() && sum.ok(); ++i) {
-    const absl::StatusOr<SummarySet> set = ReadSummary(paths[i], only);
-    if (!set.ok()) return set.status();
-    if (absl::Status status = AddToSet(*set, &*sum); !status.ok()) return InFile(paths[i], status);
+  SummaryAdder adder;
+  for (const std::string& word : words) {
+    std::vector<std::string> paths = {word};
+    if (IsFilePattern(word)) {
+      const absl::StatusOr<std::vector<MatchedFile>> files = FilesMatching(word);
+      if (!files.ok()) return files.status();
+      paths.clear();
+      for (const MatchedFile& file : *files) paths.push_back(file.path);
+    }
+    for (const std::string& path : paths) {
+      const absl::StatusOr<SummarySet> set = ReadSummary(path, only);
+      if (!set.ok()) return set.status();
+      if (absl::Status status = adder.Add(path, *set); !status.ok()) return status;
+    }
   }
-  return sum;
+  for (const std::string& note : adder.Notes()) PrintWarning(note);
+  return *adder.sum();
 }
 
 absl::Status CheckHeld(const FitFlags& flags, const FitOptions& held) {

@@ -15,7 +15,7 @@
 
 namespace lightfit::cli {
 
-// All of the files, or the first error.
+// All of the files, also of patterns, or the first error. Prints SummaryAdder::Notes().
 absl::StatusOr<SummarySet> ReadSummaries(const std::vector<std::string>& paths,
                                          const std::vector<std::string>& only);
 

@@ -10,6 +10,7 @@
 #include "absl/strings/str_format.h"
 #include "base/text_file.h"
 #include "geometry/clip.h"
+#include "io/frames/frame_table.h"
 #include "scenes/gltf_view.h"
 #include "wire/camera_proto.h"
 #include "wire/matrix_proto.h"
@@ -58,14 +59,14 @@ absl::StatusOr<int> SceneSize(const Struct& scene, const char* field) {
   return static_cast<int>(value);
 }
 
-absl::StatusOr<StatedCamera> CameraFromScene(const Struct& scene, int frame) {
-  const auto& frames = scene.fields().at("frames").list_value().values();
-  if (frame < 0 || frame >= frames.size() || !frames[frame].has_struct_value()) {
-    return absl::InvalidArgumentError(absl::StrFormat(
-        "frame %d is not in the file: it has %d, counted from 0", frame, frames.size()));
+absl::StatusOr<StatedCamera> CameraFromScene(const Struct& scene,
+                                             const Value& entry,
+                                             const std::string& where) {
+  if (!entry.has_struct_value()) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        where, ": want an object with the camera of this frame, camera_to_world and projection"));
   }
-  const std::string where = absl::StrFormat("frames[%d]", frame);
-  const Struct& cameras = frames[frame].struct_value();
+  const Struct& cameras = entry.struct_value();
   const absl::StatusOr<int> width = SceneSize(scene, "width");
   if (!width.ok()) return width.status();
   const absl::StatusOr<int> height = SceneSize(scene, "height");
@@ -83,34 +84,73 @@ absl::StatusOr<StatedCamera> CameraFromScene(const Struct& scene, int frame) {
   return StatedCamera{*std::move(camera), std::nullopt};
 }
 
-}  // namespace
-
-absl::StatusOr<StatedCamera> ParseCameraJson(absl::string_view json, int frame) {
-  Struct scene;
-  if (absl::Status status = JsonToProto(json, scene); !status.ok()) return status;
-  if (scene.fields().contains("frames")) return CameraFromScene(scene, frame);
-  if (frame != 0) {
-    return absl::InvalidArgumentError(
-        absl::StrFormat("frame %d is not in the file: it holds one camera, frame 0", frame));
-  }
-  v1::Camera proto;
-  if (absl::Status status = JsonToProto(json, proto); !status.ok()) return status;
-  return CameraFromProto(proto);
+absl::StatusOr<StatedCamera> OneOf(CameraFile file, const std::optional<FrameNumber>& frame) {
+  if (!frame.has_value()) return file.cameras[0];
+  ShotNumbers shot;
+  shot.are_known = true;
+  shot.stated = frame;
+  const absl::StatusOr<EntryChooser> chooser = EntryChooser::Make(file.numbers, shot, "cameras");
+  if (!chooser.ok()) return chooser.status();
+  const absl::StatusOr<size_t> entry = chooser->EntryOf(shot.first);
+  if (!entry.ok()) return entry.status();
+  return file.cameras[*entry];
 }
 
-absl::StatusOr<StatedCamera> ReadCameraFile(const std::string& path, int frame) {
+}  // namespace
+
+absl::StatusOr<CameraFile> ParseCameras(absl::string_view json) {
+  CameraFile file;
+  Struct scene;
+  if (absl::Status status = JsonToProto(json, scene); !status.ok()) return status;
+  if (!HasFrames(scene)) {
+    v1::Camera proto;
+    if (absl::Status status = JsonToProto(json, proto); !status.ok()) return status;
+    const absl::StatusOr<StatedCamera> camera = CameraFromProto(proto);
+    if (!camera.ok()) return camera.status();
+    file.cameras.push_back(camera);
+    file.numbers.emplace_back();
+    return file;
+  }
+  const absl::StatusOr<FrameTable> table = ReadFrameTable(scene);
+  if (!table.ok()) return table.status();
+  for (const FrameEntry& entry : *table) {
+    const std::string where = scene.fields().at("frames").has_struct_value()
+                                  ? absl::StrCat("frames.", entry.number->Text())
+                                  : absl::StrFormat("frames[%d]", file.cameras.size());
+    file.cameras.push_back(CameraFromScene(scene, entry.value, where));
+    file.numbers.push_back(entry.number);
+  }
+  return file;
+}
+
+absl::StatusOr<CameraFile> ReadCameras(const std::string& path) {
   if (IsGltf(path)) {
     absl::StatusOr<Camera> camera = ReadGltfCamera(path);
     if (!camera.ok()) return camera.status();
-    if (frame != 0) {
-      return absl::InvalidArgumentError(
-          absl::StrFormat("%s: has no frame %d: its camera stands still", path, frame));
-    }
-    return StatedCamera{*std::move(camera), std::nullopt};
+    CameraFile file;
+    file.cameras.emplace_back(StatedCamera{*std::move(camera), std::nullopt});
+    file.numbers.emplace_back();
+    return file;
   }
   const absl::StatusOr<std::string> json = ReadTextFile(path);
   if (!json.ok()) return json.status();
-  absl::StatusOr<StatedCamera> camera = ParseCameraJson(*json, frame);
+  absl::StatusOr<CameraFile> file = ParseCameras(*json);
+  if (!file.ok()) return InFile(path, file.status());
+  return file;
+}
+
+absl::StatusOr<StatedCamera> ParseCameraJson(absl::string_view json,
+                                             const std::optional<FrameNumber>& frame) {
+  absl::StatusOr<CameraFile> file = ParseCameras(json);
+  if (!file.ok()) return file.status();
+  return OneOf(*std::move(file), frame);
+}
+
+absl::StatusOr<StatedCamera> ReadCameraFile(const std::string& path,
+                                            const std::optional<FrameNumber>& frame) {
+  absl::StatusOr<CameraFile> file = ReadCameras(path);
+  if (!file.ok()) return file.status();
+  absl::StatusOr<StatedCamera> camera = OneOf(*std::move(file), frame);
   if (!camera.ok()) return InFile(path, camera.status());
   return camera;
 }

@@ -1,9 +1,12 @@
 #include "io/exr_input.h"
 
 #include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfDoubleAttribute.h>
+#include <OpenEXR/ImfFloatAttribute.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfIntAttribute.h>
 #include <OpenEXR/ImfMatrixAttribute.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfPartType.h>
@@ -20,6 +23,7 @@
 #include <optional>
 #include <utility>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/strip.h"
@@ -276,6 +280,32 @@ std::vector<std::string> ExrInput::MatrixNames(int part) const {
     if (MatrixAttribute(part, attribute.name())) names.emplace_back(attribute.name());
   }
   return names;
+}
+
+std::optional<FrameNumber> ExrInput::FrameAttribute(int part) const {
+  const Imf::Header& header = source_->file->header(part);
+  for (auto attribute = header.begin(); attribute != header.end(); ++attribute) {
+    const std::string name = absl::AsciiStrToLower(attribute.name());
+    const std::string last = name.substr(name.rfind('/') + 1);
+    if (last != "frame" && last != "framenumber" && last != "frame_number" &&
+        last != "imagecounter") {
+      continue;
+    }
+    const Imf::Attribute& value = attribute.attribute();
+    if (const auto* whole = dynamic_cast<const Imf::IntAttribute*>(&value)) {
+      return FrameNumber::Whole(whole->value());
+    }
+    if (const auto* single = dynamic_cast<const Imf::FloatAttribute*>(&value)) {
+      return FrameNumberOf(single->value());
+    }
+    if (const auto* wide = dynamic_cast<const Imf::DoubleAttribute*>(&value)) {
+      return FrameNumberOf(wide->value());
+    }
+    if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&value)) {
+      return ParseFrameNumber(text->value());
+    }
+  }
+  return std::nullopt;
 }
 
 template <typename T>

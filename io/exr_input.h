@@ -16,6 +16,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
+#include "base/frame_number.h"
 
 namespace lightfit::internal {
 
@@ -67,6 +68,9 @@ class ExrInput {
 
   // Names of the attributes that are 4 x 4 matrices.
   std::vector<std::string> MatrixNames(int part) const;
+
+  // The number of an attribute that says which frame this is: io/frames/exr_frame.h.
+  std::optional<FrameNumber> FrameAttribute(int part) const;
 
   // One channel, row-major over the display window, `outside` where the data window does not reach.
   // Half and float channels are read as float, UINT channels as uint32_t, never across; subsampled

@@ -14,6 +14,7 @@
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
 #include "base/text_file.h"
+#include "io/frames/light_frames.h"
 #include "scenes/gltf_view.h"
 #include "wire/light_proto.h"
 #include "wire/proto_json.h"
@@ -161,6 +162,11 @@ absl::StatusOr<std::vector<ListedLight>> ParseLightList(absl::string_view json) 
     v1::LightList list;
     const absl::Status of_list = JsonToProto(json, list);
     return of_list.ok() ? status : of_list;
+  }
+  if (LightFrames::HasMovingLights(file)) {
+    return absl::InvalidArgumentError(
+        "frames: its lights move, and the lights of one frame are wanted here: give each with "
+        "--light, or a file without frames");
   }
   const Value* entries = FindField(file, "lights");
   if (entries == nullptr || entries->list_value().values().empty()) {

@@ -6,6 +6,8 @@
 //       Of a .glb or .gltf file its KHR_lights_punctual (scenes/gltf_view.h).
 // Out:  lights with shadow_bit 0, 1, ... in the order of the file, and why some are of no use.
 //
+// Files of lights that move, with "frames", are read by io/frames/light_frames.h and refused here.
+//
 // Positions are in world units; a direction is the one in which the light travels, of any length.
 // Files list whole scenes: a light may say what it is in "type" or "kind", in the words of any
 // renderer ("SPOT", "distant_light", "PxrDomeLight"). With a position and a direction it is a spot,

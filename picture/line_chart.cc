@@ -101,6 +101,11 @@ class Plot {
       std::optional<Eigen::Vector2d> before;
       bool is_joined = false;
       for (size_t i = 0; i < chart_.x.size() && i < line.values.size(); ++i) {
+        if (before && i < chart_.breaks.size() && chart_.breaks[i]) {
+          if (!is_joined) canvas_.DrawDot(*before, kLineWidth, line.color);
+          before.reset();
+          is_joined = false;
+        }
         std::optional<Eigen::Vector2d> point;
         if (HasPlace(line.values[i])) point.emplace(X(chart_.x[i]), Y(*line.values[i]));
         if (point && before) canvas_.DrawLine(*before, *point, LineWidth(), line.color);

@@ -22,6 +22,7 @@ struct ChartLine {
 
 struct LineChart {
   std::vector<double> x;         // rising
+  std::vector<bool> breaks;      // by x: whether lines are interrupted before it; empty: nowhere
   std::vector<ChartLine> lines;  // later ones on top
   bool log_y = false;            // values that are not positive have no place on it
 };

@@ -75,7 +75,10 @@ std::vector<ChartKind> ChartKinds(const ShotJob& job, const ShotRows& rows) {
 LineChart ChartOf(const ShotJob& job, const ShotRows& rows, size_t light, const ChartKind& kind) {
   LineChart chart;
   chart.log_y = kind.log_y;
-  for (const ShotFrame& frame : job.frames) chart.x.push_back(static_cast<double>(frame.number));
+  for (const ShotFrame& frame : job.frames) {
+    chart.x.push_back(frame.number.value());
+    chart.breaks.push_back(frame.is_after_gap);
+  }
   for (const ShotMode mode : kShotModes) {
     if (!job.Has(mode)) continue;
     ChartLine line;

@@ -6,7 +6,10 @@
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "base/suggest.h"
 #include "cli/flags/choice_option.h"
+#include "cli/flags/frame_flag.h"
 #include "cli/flags/size_flags.h"
 #include "io/summary_file.h"
 
@@ -194,10 +197,12 @@ void DeclareCameraFlags(CLI::App* app, const std::string& group, FitFlags* flags
   app->add_option("--camera", flags->camera_path, "JSON file with the camera, or a scene file")
       ->type_name("FILE")
       ->group(group);
-  app->add_option("--frame", flags->frame, "Which frame of the --camera scene file, from 0 [0]")
-      ->type_name("N")
-      ->check(CLI::NonNegativeNumber)
-      ->group(group);
+  DeclareFrameFlag(
+      app,
+      group,
+      "Which frame of the files of --camera and --lights, by its number, or where they have none "
+      "counted from 0 [the read-back's own number]",
+      &flags->frame);
   DeclareCameraExrFlags(app, group, &flags->camera_exr);
 }
 

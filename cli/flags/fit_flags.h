@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "base/frame_number.h"
 #include "cli/flags/light_flags.h"
 #include "cli/flags/plan_flags.h"
 #include "geometry/clip.h"
@@ -47,7 +48,7 @@ struct FitFlags {
   std::string mapped_channel_format;
 
   std::string camera_path;
-  int frame = 0;
+  std::optional<FrameNumber> frame;  // of the camera file; absent: by the read-back's own number
   CameraExrOptions camera_exr;
 
   std::string json_path;

@@ -8,23 +8,13 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "base/suggest.h"
-#include "base/text_file.h"
 #include "base/verbose.h"
+#include "cli/flags/frame_inputs.h"
 #include "cli/flags/standard_streams.h"
-#include "io/camera_file.h"
 #include "optimizer/readback/readback.h"
 
 namespace lightfit::cli {
 namespace {
-
-// The depth kind may be the camera file's.
-absl::StatusOr<ReadbackExrOptions> WithBackgroundChecked(const ReadbackExrOptions& options) {
-  if (!options.background.has_value() || !IsNdc(options.depth_kind)) return options;
-  return absl::InvalidArgumentError(
-      absl::StrCat("--background: is for depths that are distances, and these are ",
-                   DepthKindName(options.depth_kind),
-                   ", whose background is the far plane: leave it out"));
-}
 
 const std::string& NameOf(const Light& light) { return light.name; }
 const std::string& NameOf(const ListedLight& listed) { return listed.light.name; }
@@ -132,8 +122,13 @@ std::vector<std::vector<ListedLight>> GroupsOfLights(std::vector<ListedLight> li
 absl::StatusOr<std::vector<Light>> ReadFitLights(const FitFlags& flags) {
   absl::StatusOr<std::vector<ListedLight>> list = ListFitLights(flags);
   if (!list.ok()) return list.status();
-  const std::vector<std::vector<ListedLight>> groups = GroupsOfLights(*list);
-  if (groups.size() > 1) return TooManyChosenError(NumUsable(*list));
+  return UsableLights(*std::move(list));
+}
+
+absl::StatusOr<std::vector<Light>> UsableLights(std::vector<ListedLight> list) {
+  const int num_usable = NumUsable(list);
+  const std::vector<std::vector<ListedLight>> groups = GroupsOfLights(std::move(list));
+  if (groups.size() > 1) return TooManyChosenError(num_usable);
   std::vector<Light> lights;
   for (const ListedLight& listed : groups.front()) {
     if (listed.status.ok()) lights.push_back(listed.light);
@@ -141,7 +136,7 @@ absl::StatusOr<std::vector<Light>> ReadFitLights(const FitFlags& flags) {
   return lights;
 }
 
-absl::StatusOr<ReadbackExrOptions> ReadbackOptionsOf(const FitFlags& flags) {
+ReadbackExrOptions ReadbackOptionsOf(const FitFlags& flags) {
   ReadbackExrOptions options;
   options.depth_kind = flags.depth_kind.value_or(DepthKind::kCameraZ);
   options.background = flags.background;
@@ -158,14 +153,7 @@ absl::StatusOr<ReadbackExrOptions> ReadbackOptionsOf(const FitFlags& flags) {
     options.mapped_channel_format = flags.mapped_channel_format;
   }
   options.camera_exr = flags.camera_exr;
-  if (flags.camera_path.empty()) return WithBackgroundChecked(options);
-  absl::StatusOr<StatedCamera> file = ReadCameraFile(flags.camera_path, flags.frame);
-  if (!file.ok()) return file.status();
-  if (!flags.depth_kind.has_value() && file->depth_kind.has_value()) {
-    options.depth_kind = *file->depth_kind;
-  }
-  options.camera = file->camera;
-  return WithBackgroundChecked(options);
+  return options;
 }
 
 namespace {
@@ -200,7 +188,7 @@ Readback FitInputs::View() const {
 }
 
 absl::StatusOr<FitInputs> ReadFitInputs(const FitFlags& flags) {
-  absl::StatusOr<std::vector<ListedLight>> lights = ListFitLights(flags);
+  absl::StatusOr<std::vector<ListedLight>> lights = ListFrameLights(flags);
   if (!lights.ok()) return lights.status();
   std::vector<std::vector<ListedLight>> groups = GroupsOfLights(*std::move(lights));
   if (groups.size() > 1) {
@@ -212,18 +200,21 @@ absl::StatusOr<FitInputs> ReadFitInputs(const FitFlags& flags) {
 }
 
 absl::StatusOr<FitInputs> ReadFitInputs(const FitFlags& flags, std::vector<ListedLight> lights) {
+  const std::string& path = flags.readback_path;
+  const absl::StatusOr<FrameInputs> frame = FrameInputs::ForFile(flags, path);
+  if (!frame.ok()) return frame.status();
+  const absl::StatusOr<ReadbackExrOptions> options = frame->ReadingOf(path, frame->number());
+  if (!options.ok()) return options.status();
   FitInputs inputs;
   std::vector<Light> usable;
   for (const ListedLight& listed : lights) {
     inputs.lights.push_back(listed.light);
     if (listed.status.ok()) usable.push_back(listed.light);
   }
-  const absl::StatusOr<ReadbackExrOptions> options = ReadbackOptionsOf(flags);
-  if (!options.ok()) return options.status();
-  absl::StatusOr<ReadbackFile> file = ReadReadbackExr(flags.readback_path, usable, *options);
+  absl::StatusOr<ReadbackFile> file = ReadReadbackExr(path, usable, *options);
   if (!file.ok()) return file.status();
   inputs.file = *std::move(file);
-  inputs.notes.Add(0, flags.readback_path, inputs.file);
+  inputs.notes.Add(0, path, inputs.file);
   if (!flags.cover_readback_path.empty()) {
     absl::StatusOr<FineCoverFile> fine =
         ReadFineCoverExr(flags.cover_readback_path, usable, *options, inputs.file);

@@ -45,10 +45,12 @@ std::vector<std::vector<ListedLight>> GroupsOfLights(std::vector<ListedLight> li
 // For one group. Where all shadows are in one channel a light beyond its bits fails alone.
 absl::StatusOr<FitInputs> ReadFitInputs(const FitFlags& flags, std::vector<ListedLight> lights);
 
-// For verbs that read many read-backs: the lights that can be used, at most kMaxLights; and how the
-// channels and the camera of a read-back are to be understood.
+// For verbs that read many read-backs: the lights that can be used, at most kMaxLights, where they
+// stand still; and how the channels of a read-back are to be understood. Cameras, and lights that
+// move: cli/flags/frame_inputs.h.
 absl::StatusOr<std::vector<Light>> ReadFitLights(const FitFlags& flags);
-absl::StatusOr<ReadbackExrOptions> ReadbackOptionsOf(const FitFlags& flags);
+absl::StatusOr<std::vector<Light>> UsableLights(std::vector<ListedLight> list);
+ReadbackExrOptions ReadbackOptionsOf(const FitFlags& flags);
 
 // Those of the lights that `only` names, in their own order; all when it names none.
 absl::StatusOr<std::vector<Light>> ChooseLights(const std::vector<Light>& lights,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/text_file.h"
 #include "cli/exit_code.h"
 #include "io/lights_file.h"
 #include "wire/light_proto.h"
@@ -36,8 +37,11 @@ void DeclareLightFlags(CLI::App* app, LightFlags* flags, const std::string& grou
 absl::StatusOr<std::vector<ListedLight>> ListLights(const LightFlags& flags) {
   std::vector<ListedLight> lights;
   if (!flags.path.empty()) {
-    absl::StatusOr<std::vector<ListedLight>> from_file = ReadLightList(flags.path);
-    if (!from_file.ok()) return from_file.status();
+    absl::StatusOr<std::vector<ListedLight>> from_file =
+        flags.json.empty() ? ReadLightList(flags.path) : ParseLightList(flags.json);
+    if (!from_file.ok()) {
+      return flags.json.empty() ? from_file.status() : InFile(flags.path, from_file.status());
+    }
     lights = *std::move(from_file);
   }
   for (const Light& light : flags.extra) {

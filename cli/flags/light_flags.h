@@ -21,6 +21,7 @@ namespace lightfit::cli {
 
 struct LightFlags {
   std::string path;
+  std::string json;          // not empty: instead of what is in that file, where lights move
   std::vector<Light> extra;  // --light; replace those of the file by name
 };
 

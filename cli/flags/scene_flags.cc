@@ -15,6 +15,7 @@
 #include "base/suggest.h"
 #include "cli/flags/fit_flags.h"
 #include "cli/flags/fit_inputs.h"
+#include "cli/flags/frame_flag.h"
 #include "cli/flags/size_flags.h"
 #include "geometry/resized_camera.h"
 #include "geometry/sized_camera.h"
@@ -80,10 +81,11 @@ void DeclareCamera(CLI::App* app, SceneFlags* flags) {
          "Which way is up, for --camera and --random-lights [0,1,0]")
       ->type_name("X,Y,Z")
       ->group(group);
-  app->add_option("--frame", flags->frame, "Which frame of the --camera scene file, from 0 [0]")
-      ->type_name("N")
-      ->check(CLI::NonNegativeNumber)
-      ->group(group);
+  DeclareFrameFlag(app,
+                   group,
+                   "Which frame of the --camera scene file, by its number, or where it has none "
+                   "counted from 0 [the first]",
+                   &flags->frame);
 }
 
 absl::StatusOr<Camera> CameraFromFile(const SceneFlags& flags,

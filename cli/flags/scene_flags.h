@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "base/frame_number.h"
 #include "cli/flags/light_flags.h"
 #include "geometry/camera.h"
 #include "geometry/light.h"
@@ -35,7 +36,7 @@ struct SceneFlags {
   std::optional<SceneGeneratorOptions> generator;  // present: `scene` is "generate..."
   std::string camera;                              // as given; empty: none
   std::optional<ViewFlags> view;                   // absent: `camera` is a file
-  int frame = 0;                                   // of the camera file
+  std::optional<FrameNumber> frame;                // of the camera file; absent: the first
   Eigen::Vector3d up = Eigen::Vector3d::UnitY();   // of the view and of random lights
   LightFlags lights;
   std::vector<std::string> only;  // names; empty: all

@@ -5,7 +5,7 @@
 
 #include "base/parallel.h"
 #include "cli/flags/fit_inputs.h"
-#include "io/camera_file.h"
+#include "cli/flags/frame_inputs.h"
 #include "io/summary_file.h"
 #include "jobs/fit_comparison.h"
 
@@ -29,6 +29,9 @@ constexpr char kExamples[] =
     "  shot.csv, shot.png    energy, footprint and crawl of every frame\n"
     "With --maps a light has a plan of several maps wherever it would have a matrix; when tracked\n"
     "each map is kept, moved by whole texels or replaced by itself.\n"
+    "\n"
+    "Frames go by the numbers of their names, below zero and between frames too, and so do their\n"
+    "cameras and lights in files of several frames. Frames that are missing are named.\n"
     "\n"
     "A run that was stopped goes on where it was: a frame whose file, lights and options are the\n"
     "same is not computed again, and results are the same to the last byte. A frame that cannot\n"
@@ -106,10 +109,18 @@ void DeclareOutput(CLI::App* app, ShotFlags* flags) {
       ->group(group);
 }
 
-// Whether --camera is a file of one camera, which is then that of all frames: it stands still.
-bool HasOneCamera(const FitFlags& flags) {
-  if (flags.camera_path.empty()) return false;
-  return ReadCameraFile(flags.camera_path, 0).ok() && !ReadCameraFile(flags.camera_path, 1).ok();
+std::vector<std::string> NotesOf(const FrameList& list) {
+  std::vector<std::string> notes;
+  if (!list.reordered.empty()) notes.push_back(list.reordered);
+  if (!list.apart.empty()) {
+    notes.push_back(list.apart + ": crawl is from one of these to the next");
+  }
+  if (!list.missing.empty()) {
+    notes.push_back(list.missing +
+                    ": one map for the shot is not made for what is missing, and crawl is not "
+                    "counted over the gap");
+  }
+  return notes;
 }
 
 }  // namespace
@@ -119,10 +130,10 @@ void DeclareShotFlags(CLI::App* app, ShotFlags* flags) {
   const std::string input = "Input";
   app->add_option("frames",
                   flags->inputs,
-                  "A folder of read-backs (its *.exr), a text file with one path per line, or EXR "
-                  "files in order")
+                  "A folder of read-backs (its *.exr), a text file with one path per line, EXR "
+                  "files, or a pattern such as 'shot.####.exr', 'shot.%04d.exr' or 'shot.*.exr'")
       ->required()
-      ->type_name("FOLDER|LIST|READBACK.exr");
+      ->type_name("FOLDER|LIST|PATTERN|READBACK.exr");
   DeclareLightFlags(app, &flags->fit.lights, input);
   DeclareOnlyFlag(app, input, &flags->fit.only);
   DeclareReadbackFlags(app, input, &flags->fit);
@@ -190,13 +201,17 @@ std::optional<PlanTrackerOptions> PlanTrackerOptionsOf(const ShotFlags& flags) {
 absl::StatusOr<ShotJob> MakeShotJob(const ShotFlags& flags) {
   absl::StatusOr<FrameList> list = ListFrames(flags.inputs);
   if (!list.ok()) return list.status();
-  absl::StatusOr<std::vector<Light>> lights = ReadFitLights(flags.fit);
+  const absl::StatusOr<FrameInputs> inputs = FrameInputs::ForShot(flags.fit, *list);
+  if (!inputs.ok()) return inputs.status();
+  const ShotFrame& first = list->frames.front();
+  absl::StatusOr<FrameLights> lights = inputs->LightsOf(first.path, first.number);
   if (!lights.ok()) return lights.status();
 
   ShotJob job;
   job.name = list->shot;
   job.frames = std::move(list->frames);
-  job.lights = *std::move(lights);
+  job.lights = std::move(lights->lights);
+  job.notes = NotesOf(*list);
   const bool all = !flags.per_frame && !flags.tracked && !flags.per_shot;
   const bool sums_up = all && !flags.fit.as_published;  // see CheckModes()
   job.modes = {all || flags.per_frame, all || flags.tracked, sums_up || flags.per_shot};
@@ -210,12 +225,18 @@ absl::StatusOr<ShotJob> MakeShotJob(const ShotFlags& flags) {
   job.num_threads = flags.num_threads > 0 ? flags.num_threads : NumProcessors();
   job.quiet = flags.fit.quiet;
 
-  FitFlags frame_flags = flags.fit;
-  const int frames_per_step = HasOneCamera(flags.fit) ? 0 : 1;
   for (ShotFrame& frame : job.frames) {
-    frame.exr = ReadbackOptionsOf(frame_flags);
-    frame_flags.frame += frames_per_step;
+    frame.exr = inputs->ReadingOf(frame.path, frame.number);
+    if (!inputs->HasMovingLights()) continue;
+    absl::StatusOr<FrameLights> own = inputs->LightsOf(frame.path, frame.number);
+    if (own.ok()) {
+      frame.lights = std::move(own->lights);
+      frame.absent_lights = std::move(own->absent);
+    } else {
+      frame.exr = own.status();
+    }
   }
+  job.FindMotion();
   // A camera file without even the first is a mistake of the command line.
   if (!job.frames.front().exr.ok()) return job.frames.front().exr.status();
   return job;

@@ -22,7 +22,8 @@ namespace lightfit::cli {
 struct ShotFlags {
   std::vector<std::string> inputs;  // as ListFrames() takes them
 
-  // Lights, channels, camera, map and method; FitFlags::frame is that of the first frame.
+  // Lights, channels, camera, map and method; FitFlags::frame is that of the first frame, others
+  // count on from it by their numbers.
   FitFlags fit;
 
   bool per_frame = false, tracked = false, per_shot = false;  // none: all of them

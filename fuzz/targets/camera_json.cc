@@ -32,6 +32,8 @@ void PromiseCamera(const absl::StatusOr<StatedCamera>& file) {
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace lightfit;  // NOLINT(google-build-using-namespace)
   const absl::string_view json(reinterpret_cast<const char*>(data), size);
-  for (const int frame : {0, 1}) fuzz::PromiseCamera(ParseCameraJson(json, frame));
+  for (const int frame : {0, 1}) {
+    fuzz::PromiseCamera(ParseCameraJson(json, FrameNumber::Whole(frame)));
+  }
   return 0;
 }

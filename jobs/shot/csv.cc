@@ -28,7 +28,7 @@ std::string Line(const ShotJob& job, const ShotRows& rows, const ShotRow& row) {
   if (row.crawl && row.crawl->num_edge_points > 0) edge_crawl = row.crawl->edge_crawl_px;
   const std::string fields[] = {ShotModeName(row.mode),
                                 CsvField(frame.name),
-                                absl::StrCat(frame.number),
+                                frame.number.Text(),
                                 CsvField(job.lights[row.light].name),
                                 ok ? "ok" : "failed",
                                 row.action,

@@ -10,7 +10,8 @@
 namespace lightfit {
 
 // Starts with a line of names. Fields that a line does not have are empty: figures where there is
-// no matrix, ratios without per-frame matrices, crawl in the first frame.
+// no matrix, ratios without per-frame matrices; crawl in the first frame, after frames that are
+// missing, and where the light has moved.
 std::string ShotCsv(const ShotJob& job, const ShotRows& rows);
 
 }  // namespace lightfit

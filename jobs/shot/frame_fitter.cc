@@ -12,7 +12,8 @@ namespace {
 absl::StatusOr<ShotAnswer> FitOne(const ShotJob& job, const FrameViews& views, size_t light) {
   if (!views[light].ok()) return views[light].status();
   if (job.plans.has_value()) {
-    absl::StatusOr<LightPlan> plan = FitPlan(*views.surfaces(), job.lights[light], job.plans->plan);
+    absl::StatusOr<LightPlan> plan =
+        FitPlan(*views.surfaces(), views.lights()[light], job.plans->plan);
     if (!plan.ok()) return plan.status();
     TrackedPlan tracked;
     tracked.is_new = true;
@@ -23,7 +24,7 @@ absl::StatusOr<ShotAnswer> FitOne(const ShotJob& job, const FrameViews& views, s
   }
   absl::StatusOr<LightMatrix> matrix =
       job.fit().border == BorderChoice::kAutomatic
-          ? FitLight(*views.surfaces(), job.lights[light], job.map, job.fit())
+          ? FitLight(*views.surfaces(), views.lights()[light], job.map, job.fit())
           : FitLight(*views[light], job.map, job.fit());
   if (!matrix.ok()) return matrix.status();
   return TrackedMatrix{*std::move(matrix), TrackerAction::kReplaced, 0};
@@ -74,7 +75,7 @@ TrackedMatrices ShotTracker::TrackMatrices(const absl::StatusOr<ReadbackFile>& f
   if (!file.ok()) return TrackedMatrices(job_.lights.size(), file.status());
   std::vector<Light> readable;
   for (size_t i = 0; i < job_.lights.size(); ++i) {
-    if (file->light_status[i].ok()) readable.push_back(job_.lights[i]);
+    if (file->light_status[i].ok()) readable.push_back(views.lights()[i]);
   }
   const absl::StatusOr<Surfaces>& surfaces = views.surfaces();
   TrackedMatrices tracked = surfaces.ok() ? matrices_.Update(*surfaces, readable, job_.map)

@@ -1,8 +1,11 @@
 #include "jobs/shot/job.h"
 
+#include <algorithm>
+
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "jobs/fit_comparison.h"
+#include "optimizer/tracking/keep_matrix.h"
 
 namespace lightfit {
 
@@ -16,6 +19,27 @@ const char* ShotModeName(ShotMode mode) {
       return "per-shot";
   }
   return "?";
+}
+
+void ShotJob::FindMotion() {
+  motion.assign(lights.size(), absl::OkStatus());
+  for (size_t light = 0; light < lights.size(); ++light) {
+    size_t first = frames.size();  // in which it is
+    for (size_t i = 0; i < frames.size(); ++i) {
+      const std::vector<std::string>& absent = frames[i].absent_lights;
+      if (std::find(absent.begin(), absent.end(), lights[light].name) != absent.end()) continue;
+      if (first == frames.size()) first = i;
+      if (IsSameLight(LightsIn(i)[light], LightsIn(first)[light])) continue;
+      motion[light] = absl::FailedPreconditionError(
+          absl::StrFormat("light \"%s\": it moves (between frames %s and %s), and one map for the "
+                          "whole shot cannot "
+                          "serve it; take its maps of each frame, per-frame or tracked",
+                          lights[light].name,
+                          frames[first].number.Text(),
+                          frames[i].number.Text()));
+      break;
+    }
+  }
 }
 
 std::string MapsText(const ShotJob& job) {

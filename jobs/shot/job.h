@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "absl/status/status.h"
 #include "geometry/clip.h"
 #include "geometry/light.h"
 #include "jobs/shot/frames.h"
@@ -31,7 +32,20 @@ const char* ShotModeName(ShotMode mode);
 struct ShotJob {
   std::string name;  // of the shot
   std::vector<ShotFrame> frames;
-  std::vector<Light> lights;
+  std::vector<Light> lights;  // those that move: somewhere
+
+  // As they are in that frame, in the same order.
+  const std::vector<Light>& LightsIn(size_t frame) const {
+    return frames[frame].lights.empty() ? lights : frames[frame].lights;
+  }
+
+  // FailedPrecondition for a light that moves: one map for all frames cannot serve it. Known once
+  // FindMotion() has looked at all frames; until then all stand still.
+  void FindMotion();
+  absl::Status StandsStill(size_t light) const {
+    return motion.empty() ? absl::OkStatus() : motion[light];
+  }
+  std::vector<absl::Status> motion;
 
   std::array<bool, kShotModes.size()> modes = {true, true, true};  // by ShotMode
   bool Has(ShotMode mode) const { return modes[static_cast<size_t>(mode)]; }
@@ -51,7 +65,8 @@ struct ShotJob {
   std::string folder;  // for results; it is there
   bool force = false;  // whether results that are there already are computed again
   int num_threads = 1;
-  bool quiet = false;  // no progress bar
+  bool quiet = false;              // no progress bar
+  std::vector<std::string> notes;  // for people, before the work: what is missing
 };
 
 // "map 1024 x 1024 texels", "up to 4 maps for each light, 1048576 texels in all".

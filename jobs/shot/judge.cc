@@ -1,10 +1,13 @@
 #include "jobs/shot/judge.h"
 
+#include <algorithm>
 #include <utility>
 
+#include "absl/strings/str_format.h"
 #include "base/text_file.h"
 #include "optimizer/evaluate.h"
 #include "optimizer/fit.h"
+#include "optimizer/tracking/keep_matrix.h"
 #include "partition/evaluate_plan.h"
 #include "partition/tracking/plan_crawl.h"
 #include "wire/plan_proto.h"
@@ -91,23 +94,42 @@ absl::StatusOr<ShotFit> JudgeFit(const ShotJob& job,
 
 }  // namespace
 
-absl::StatusOr<ReadbackFile> ReadFrame(const ShotFrame& frame, absl::Span<const Light> lights) {
+absl::Status AbsentError(const std::string& light_name, FrameNumber number) {
+  return absl::NotFoundError(absl::StrFormat(
+      "light \"%s\": --lights does not say where it is in frame %s", light_name, number.Text()));
+}
+
+void SetAbsent(const std::vector<std::string>& absent,
+               FrameNumber number,
+               const std::vector<Light>& lights,
+               ReadbackFile* file) {
+  for (size_t i = 0; i < lights.size(); ++i) {
+    if (std::find(absent.begin(), absent.end(), lights[i].name) == absent.end()) continue;
+    file->light_status[i] = AbsentError(lights[i].name, number);
+  }
+}
+
+absl::StatusOr<ReadbackFile> ReadFrame(const ShotJob& job, size_t index) {
+  const ShotFrame& frame = job.frames[index];
   if (!frame.exr.ok()) return frame.exr.status();
+  const std::vector<Light>& lights = job.LightsIn(index);
   absl::StatusOr<ReadbackFile> file = ReadReadbackExr(frame.path, lights, *frame.exr);
   if (!file.ok()) return file.status();
   const absl::Status status = InFile(frame.path, ValidateReadback(file->View()));
   if (!status.ok()) return status;
+  SetAbsent(frame.absent_lights, frame.number, lights, &*file);
   return file;
 }
 
-FrameViews::FrameViews(const ShotJob& job, const absl::StatusOr<ReadbackFile>& file)
-    : surfaces_(file.ok() ? FindSurfaces(file->View(), LightMask(job.lights), job.fit().samples)
+FrameViews::FrameViews(const ShotJob& job, size_t frame, const absl::StatusOr<ReadbackFile>& file)
+    : lights_(job.LightsIn(frame)),
+      surfaces_(file.ok() ? FindSurfaces(file->View(), LightMask(lights_), job.fit().samples)
                           : absl::StatusOr<Surfaces>(file.status())) {
-  for (size_t i = 0; i < job.lights.size(); ++i) {
+  for (size_t i = 0; i < lights_.size(); ++i) {
     const absl::Status status =
         file.ok() && !file->light_status[i].ok() ? file->light_status[i] : surfaces_.status();
     if (status.ok()) {
-      views_.push_back(ViewLight(*surfaces_, job.lights[i], job.fit()));
+      views_.push_back(ViewLight(*surfaces_, lights_[i], job.fit()));
     } else {
       views_.emplace_back(status);
     }
@@ -133,6 +155,18 @@ ShotLookUps LookUpsOf(const ShotJob& job, const v1::FitResult& result) {
     look_ups[i] = PlanOfOneMap(job.lights[i].name, *map, job.map, *border);
   }
   return look_ups;
+}
+
+FrameBefore BeforeFrame(const ShotJob& job,
+                        size_t frame,
+                        const absl::StatusOr<ReadbackFile>& file_before,
+                        ShotLookUps look_ups) {
+  if (frame == 0 || job.frames[frame].is_after_gap || !file_before.ok()) return {};
+  const std::vector<Light>&before = job.LightsIn(frame - 1), &now = job.LightsIn(frame);
+  for (size_t i = 0; i < look_ups.size(); ++i) {
+    if (!IsSameLight(before[i], now[i])) look_ups[i].reset();
+  }
+  return {&*file_before, std::move(look_ups)};
 }
 
 std::vector<absl::StatusOr<ShotFit>> JudgeFits(const ShotJob& job,

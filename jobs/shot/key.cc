@@ -75,24 +75,50 @@ std::string ReadingText(const ReadbackExrOptions& exr) {
                          exr.camera.has_value() ? JsonOrError(CameraToProto(*exr.camera)) : "");
 }
 
+std::string LightsText(const std::vector<Light>& lights) {
+  std::string text;
+  for (const Light& light : lights) {
+    absl::StrAppend(&text, JsonOrError(LightToProto(light)), light.shadow_bit, "\n");
+  }
+  return text;
+}
+
 std::string FrameText(const ShotFrame& frame) {
-  return absl::StrCat(frame.name,
+  return absl::StrCat(LightsText(frame.lights),
+                      absl::StrJoin(frame.absent_lights, "\n"),
+                      "\n",
+                      frame.name,
                       " ",
-                      frame.number,
+                      frame.number.Text(),
                       "\n",
                       KeyOfFile(frame.path),
                       "\n",
                       frame.exr.ok() ? ReadingText(*frame.exr) : frame.exr.status().ToString());
 }
 
-// What goes into summaries.
-std::string SummarySettings(const ShotJob& job) {
-  std::string text = absl::StrCat(
-      kVersion, " fits ", kFitRevision, "\n", JsonOrError(FitOptionsToProto(job.fit())));
-  for (const Light& light : job.lights) {
-    absl::StrAppend(&text, JsonOrError(LightToProto(light)), light.shadow_bit, "\n");
+// Raised whenever summaries or results say more of the frames than before.
+constexpr int kFramesRevision = 1;
+
+// Which lights have no part in the shot's sum.
+std::string MovingText(const ShotJob& job) {
+  std::string text;
+  for (size_t i = 0; i < job.lights.size(); ++i) {
+    if (!job.StandsStill(i).ok()) absl::StrAppend(&text, "moving ", i, "\n");
   }
   return text;
+}
+
+// What goes into summaries.
+std::string SummarySettings(const ShotJob& job) {
+  return absl::StrCat(kVersion,
+                      " fits ",
+                      kFitRevision,
+                      " frames ",
+                      kFramesRevision,
+                      "\n",
+                      JsonOrError(FitOptionsToProto(job.fit())),
+                      LightsText(job.lights),
+                      MovingText(job));
 }
 
 std::string PlanText(const PlanTrackerOptions& plans) {
@@ -120,13 +146,16 @@ ShotKeys ComputeShotKeys(const ShotJob& job) {
                                   : JsonOrError(TrackerSettingsToProto(job.tracker));
   ShotKeys keys;
   std::string before = "none", tracked = "none", all;
-  for (const std::string& frame : frame_keys) {
+  for (size_t i = 0; i < job.frames.size(); ++i) {
+    const std::string& frame = frame_keys[i];
+    if (job.frames[i].is_after_gap) before = absl::StrCat("gap ", before);
     keys.summaries.push_back(KeyOf(absl::StrCat(summary_settings, frame)));
     keys.frames[static_cast<size_t>(ShotMode::kPerFrame)].push_back(
         KeyOf(absl::StrCat(settings, before, " ", frame)));
-    tracked = KeyOf(absl::StrCat(settings, tracker, tracked, " ", frame));
+    const char* gap = job.frames[i].is_after_gap ? " after a gap " : " ";
+    tracked = KeyOf(absl::StrCat(settings, tracker, tracked, gap, frame));
     keys.frames[static_cast<size_t>(ShotMode::kTracked)].push_back(tracked);
-    absl::StrAppend(&all, frame, "\n");
+    absl::StrAppend(&all, frame, job.frames[i].is_after_gap ? " after a gap\n" : "\n");
     before = frame;
   }
   keys.shot = KeyOf(absl::StrCat(settings, job.rounds, "\n", all));

@@ -96,10 +96,10 @@ class FramePipeline {
       if (job_.Has(mode) && context_.IsDone(mode, frame)) LoadDone(mode, frame, part);
     }
     if (MustReadFrame(context_, frame)) {
-      work->file = ReadFrame(job_.frames[frame], job_.lights);
+      work->file = ReadFrame(job_, frame);
       context_.frame_status[frame] = work->file.status();
       if (work->file.ok()) context_.AddNotes(frame, *work->file);
-      work->views.emplace(job_, work->file);
+      work->views.emplace(job_, frame, work->file);
     }
     if (IsMissing(ShotMode::kPerFrame, frame)) {
       work->per_frame.answers = FitFrame(job_, *work->views);
@@ -133,11 +133,14 @@ class FramePipeline {
       std::vector<LightSummary> lights;
       for (size_t i = 0; i < job_.lights.size(); ++i) {
         const absl::StatusOr<LightView>& view = (*work.views)[i];
+        const absl::Status still = job_.StandsStill(i);
+        const absl::Status status = still.ok() ? view.status() : still;
         const absl::StatusOr<Summary> summary =
-            view.ok() ? Summarize(*view, job_.fit()) : absl::StatusOr<Summary>(view.status());
+            status.ok() ? Summarize(*view, job_.fit()) : absl::StatusOr<Summary>(status);
         lights.push_back(SummaryOfFrame(job_.lights[i], summary, frame.name, job_.fit()));
       }
-      set = MakeSummarySet(job_.fit(), std::move(lights));
+      set = MakeSummarySet(
+          job_.fit(), std::move(lights), IdentityOf(work.file->View(), frame.number));
       context_.Fail(WriteSummaryFile(path, *set, absl::StrCat("lightfit ", kVersion)));
       context_.Fail(WriteTextFileAtomically(context_.paths.SummaryKey(frame),
                                             context_.keys.summaries[work.frame]));
@@ -180,9 +183,9 @@ class FramePipeline {
   void FinishMode(ShotMode mode, FrameWork::Mode FrameWork::*part, FrameWork* work) {
     if (!IsMissing(mode, work->frame)) return;
     FrameBefore before;
-    if (work->before != nullptr && work->before->file.ok()) {
-      before.file = &*work->before->file;
-      before.look_ups = (work->before.get()->*part).look_ups;
+    if (work->before != nullptr) {
+      before =
+          BeforeFrame(job_, work->frame, work->before->file, (work->before.get()->*part).look_ups);
     }
     const FrameWork::Mode& own = work->*part;
     const std::vector<absl::StatusOr<ShotFit>> fits =
@@ -214,7 +217,8 @@ bool MustReadFrame(const ShotContext& context, size_t frame) {
   if (NeedsSummary(context, frame) && !context.HasSummary(frame)) return true;
   if (context.SumsRays()) return true;
   // The frame after needs it for its crawl.
-  return frame + 1 < context.job.frames.size() && context.NeedsFits(frame + 1);
+  return frame + 1 < context.job.frames.size() && context.NeedsFits(frame + 1) &&
+         !context.job.frames[frame + 1].is_after_gap;
 }
 
 absl::StatusOr<SummarySet> FitFrames(ShotContext* context) { return FramePipeline(context).Run(); }

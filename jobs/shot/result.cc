@@ -35,6 +35,7 @@ void SetAnswer(const ShotFit& shot_fit, const ShotJob& job, LightFit* fit) {
 }
 
 FitReport ReportOf(const ShotJob& job,
+                   const std::vector<Light>& lights,
                    const ReadbackFile* readback,
                    absl::Span<const absl::StatusOr<ShotFit>> fits) {
   FitReport report;
@@ -48,7 +49,7 @@ FitReport ReportOf(const ShotJob& job,
   }
   for (size_t light = 0; light < fits.size(); ++light) {
     LightFit fit;
-    fit.light = job.lights[light];
+    fit.light = lights[light];
     if (fits[light].ok()) {
       SetAnswer(*fits[light], job, &fit);
     } else {
@@ -120,7 +121,7 @@ v1::FitResult ShotResultToProto(const ShotJob& job,
                                 const ReadbackFile* readback,
                                 absl::Span<const absl::StatusOr<ShotFit>> fits,
                                 const ShotStates& states) {
-  FitReport report = ReportOf(job, readback, fits);
+  FitReport report = ReportOf(job, job.LightsIn(frame), readback, fits);
   report.source = job.frames[frame].path;
   v1::FitResult result = FitResultToProto(report);
   if (readback == nullptr) {
@@ -137,7 +138,8 @@ v1::FitResult ShotResultToProto(const ShotJob& job,
   v1::ShotInfo& shot = *result.mutable_shot();
   shot.set_mode(ModeToProto(mode));
   shot.set_frame(job.frames[frame].name);
-  shot.set_number(job.frames[frame].number);
+  shot.set_number(job.frames[frame].number.floor());
+  shot.set_sub_frame(static_cast<double>(job.frames[frame].number.rest()) / FrameNumber::kUnit);
   if (readback != nullptr) shot.set_key(key);
   if (mode == ShotMode::kTracked) {
     if (job.plans.has_value()) {

@@ -28,8 +28,8 @@ struct ShotFit {
   std::optional<Crawl> crawl;  // against the frame before, where both have an answer
 };
 
-// `fits[l]` belongs to job.lights[l]; `readback` is null when the frame could not be read, and then
-// the key is left out, so that another run tries again. `states`: kTracked only; else none.
+// `fits[l]` belongs to light l of the job; `readback` is null when the frame could not be read, and
+// then the key is left out, so that another run tries again. `states`: kTracked only; else none.
 v1::FitResult ShotResultToProto(const ShotJob& job,
                                 ShotMode mode,
                                 size_t frame,

@@ -37,7 +37,12 @@ absl::StatusOr<LightMatrix> FitTotal(const SummaryTotal& total,
 
 ShotMatrices FitSum(const SummarySet& sum, const ShotJob& job) {
   ShotMatrices matrices;
-  for (const Light& light : job.lights) {
+  for (size_t i = 0; i < job.lights.size(); ++i) {
+    const Light& light = job.lights[i];
+    if (const absl::Status still = job.StandsStill(i); !still.ok()) {
+      matrices.emplace_back(still);
+      continue;
+    }
     matrices.emplace_back(absl::FailedPreconditionError(
         absl::StrFormat("light \"%s\": no frame of the shot could be read", light.name)));
     for (const LightSummary& summary : sum.lights) {
@@ -57,9 +62,9 @@ std::vector<std::optional<SummaryTotal>> WeighAllFrames(const ShotMatrices& matr
   std::vector<std::optional<SummaryTotal>> totals(job.lights.size());
   std::mutex mutex;
   const auto weigh = [&](size_t frame) {
-    const absl::StatusOr<ReadbackFile> file = ReadFrame(job.frames[frame], job.lights);
+    const absl::StatusOr<ReadbackFile> file = ReadFrame(job, frame);
     context->frame_status[frame] = file.status();
-    const FrameViews views(job, file);
+    const FrameViews views(job, frame, file);
     for (size_t i = 0; i < job.lights.size(); ++i) {
       if (!matrices[i].ok() || !views[i].ok()) continue;
       const absl::StatusOr<Summary> summary =
@@ -221,13 +226,12 @@ void JudgeFrames(const ShotAnswers& answers, int begin, int end, ShotContext* co
       if (result.ok()) context->KeepRows(ShotMode::kPerShot, i, *result);
       continue;
     }
-    if (i > 0 && last_read != i - 1) before = ReadFrame(job.frames[i - 1], job.lights);
-    absl::StatusOr<ReadbackFile> file = ReadFrame(job.frames[i], job.lights);
+    if (i > 0 && last_read != i - 1) before = ReadFrame(job, i - 1);
+    absl::StatusOr<ReadbackFile> file = ReadFrame(job, i);
     context->frame_status[i] = file.status();
-    const FrameViews views(job, file);
+    const FrameViews views(job, i, file);
     const ShotAnswers readable = ReadableOf(answers, file);
-    FrameBefore frame_before;
-    if (i > 0 && before.ok()) frame_before = {&*before, LookUpsOf(answers)};
+    const FrameBefore frame_before = BeforeFrame(job, i, before, LookUpsOf(answers));
     std::vector<absl::StatusOr<ShotFit>> fits = JudgeFits(job, views, readable, frame_before);
     for (absl::StatusOr<ShotFit>& fit : fits) {
       if (!fit.ok()) continue;

@@ -63,8 +63,9 @@ FrameRaySums SumRaysOfFrame(const ShotJob& job, const FrameViews& views) {
   const int most_samples = std::max(kLeastSamplesOfFrame, kMostSamples / num_frames);
   FrameRaySums sums;
   for (size_t i = 0; i < job.lights.size(); ++i) {
-    if (!views[i].ok()) {
-      sums.emplace_back(views[i].status());
+    const absl::Status still = job.StandsStill(i);
+    if (!still.ok() || !views[i].ok()) {
+      sums.emplace_back(still.ok() ? views[i].status() : still);
       continue;
     }
     const absl::StatusOr<ServedRays> rays = FindServedRays(*views[i], job.fit(), options);

@@ -91,12 +91,14 @@ TEST(CommandLine, AllocateOfSummariesIsTheSame) {
 TEST(CommandLine, FitOfSummariesIsTheSame) {
   const TemporaryFolder folder;
   const std::string summary = YardSummary(folder, "yard.summary");
+  const std::string other = folder.Path("other.summary");
+  RunSummarize({YardFrame(folder, "0002.exr"), "--lights", kYardLights, "-o", other});
   const std::string path = folder.Path("fit.json");
   const Arguments arguments = {
-      "fit", "--summary", summary, summary, "--map", "512x256", "--quiet", "--json", path};
+      "fit", "--summary", summary, other, "--map", "512x256", "--quiet", "--json", path};
   ASSERT_EQ(RunLightfit(arguments).exit_code, 0);
   v1::FitSummaryRequest request;
-  for (int i = 0; i < 2; ++i) request.add_summary_files(ReadFile(summary));
+  for (const std::string& file : {summary, other}) request.add_summary_files(ReadFile(file));
   request.mutable_map()->set_width(512);
   request.mutable_map()->set_height(256);
   const auto result = AnswerFitSummary(request, CallContext());

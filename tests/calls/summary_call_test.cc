@@ -42,6 +42,23 @@ v1::FitSummaryRequest YardRequest() {
   return request;
 }
 
+TEST(SummaryCall, AFrameInTwoSummariesIsRefusedWithBothNamed) {
+  std::vector<SummarySet> frames = FramesOfYard(2);
+  for (int i = 0; i < 2; ++i) {
+    frames[i].frames = {IdentityOf(Yard().file.View(), FrameNumber::Whole(1001 + i))};
+  }
+  v1::FitSummaryRequest request;
+  *request.add_summaries() = SummarySetToProto(frames[0]);
+  request.add_summary_files(BytesOf(frames[1]));
+  SetMap(kMap, request.mutable_map());
+  EXPECT_THAT(AnswerFitSummary(request, CallContext()), testing::IsOk());
+  request.add_summary_files(BytesOf(frames[0]));
+  EXPECT_THAT(AnswerFitSummary(request, CallContext()),
+              testing::StatusIs(absl::StatusCode::kInvalidArgument,
+                                "frame 1001 is in summaries[0] and in summary_files[1], and would "
+                                "count twice: leave one of the two out"));
+}
+
 TEST(SummaryCall, IsTheLibrarysFitOfTheSum) {
   std::vector<SummarySet> frames = FramesOfYard(2);
   ASSERT_THAT(AddToSet(frames[1], &frames[0]), testing::IsOk());

@@ -37,6 +37,13 @@ inline void RunSummarize(const Arguments& arguments) {
   EXPECT_EQ(result.exit_code, 0) << result.err;
 }
 
+// The yard's read-back as a frame of another number.
+inline std::string YardFrame(const TemporaryFolder& folder, const std::string& name) {
+  const std::string path = folder.Path(name);
+  WriteFile(path, ReadFile(kYard));
+  return path;
+}
+
 // The yard with some light, as a summary file of that name in the folder.
 inline std::string YardSummary(const TemporaryFolder& folder,
                                const std::string& name,

@@ -103,14 +103,58 @@ TEST(Summarize, OnlyKeepsTheNamedLightsOfReadBacksAndSummaries) {
       RunLightfit({"fit", "--summary", all, "--only", "sum"}), 2, {"did you mean \"sun\"?"});
 }
 
-TEST(Summarize, AddsInPlace) {
+// A farm that runs its last job again: nothing counts twice.
+TEST(Summarize, AFrameThatIsInTwoInputsIsRefused) {
   const TemporaryFolder folder;
-  const std::string sum = YardSummary(folder, "sum.summary");
-  RunSummarize({sum, kYard, "--lights", kYardLights, "-o", sum});
-  const absl::StatusOr<SummarySet> set = ReadSummaryFile(sum);
-  ASSERT_TRUE(set.ok()) << set.status();
-  EXPECT_EQ(set->lights[0].num_frames(), 2);
-  EXPECT_THAT(folder.Files(), ElementsAre("sum.summary"));
+  const std::string one = YardSummary(folder, "one.summary"), sum = folder.Path("sum.summary");
+  const std::string two = folder.Path("two.summary"), frame = YardFrame(folder, "0002.exr");
+  RunSummarize({frame, "--lights", kYardLights, "-o", two});
+  RunSummarize({folder.Path("*.summary"), "-o", sum});
+  const std::string expected = ReadFile(sum);
+  // The output among the inputs, by another name as well.
+  std::filesystem::create_symlink(folder.Path(""), folder.Path("link"));
+  for (const std::string& output : {sum, folder.Path("link/sum.summary")}) {
+    ExpectError(RunLightfit({"summarize", one, two, sum, "-o", output}),
+                2,
+                {"-o " + output, "is among the inputs"});
+  }
+  ExpectError(RunLightfit({"summarize", folder.Path("*.summary"), "-o", folder.Path("b.summary")}),
+              2,
+              {"frame 1 is in ", "one.summary and in ", "sum.summary, and would count twice"});
+  ExpectError(RunLightfit({"fit", "--summary", one, sum}), 2, {"frame 1 is in ", "would count"});
+  ExpectError(RunLightfit({"summarize", kYard, one, "--lights", kYardLights, "-o", two}),
+              2,
+              {"frame 1 is in ", "0001.exr and in ", "one.summary"});
+  ExpectError(RunLightfit({"summarize", kYard, kYard, "--lights", kYardLights, "-o", two}),
+              2,
+              {"are both frame 1"});
+  EXPECT_TRUE(ReadFile(sum) == expected);
+  // With fewer lights it is the same frame.
+  const std::string only = YardSummary(folder, "only.summary", {"--only", "sun"});
+  ExpectError(RunLightfit({"fit", "--summary", one, only, "--only", "sun"}), 2, {"frame 1 is in"});
+}
+
+// One frame with two contents is said, and one whose file does not say what it is.
+TEST(Summarize, DoubtsAboutFramesAreSaid) {
+  const TemporaryFolder folder;
+  const std::string one = YardSummary(folder, "one.summary"), sum = folder.Path("sum.summary");
+  const std::string again = folder.Path("again.summary"), old = folder.Path("old.summary");
+  RunSummarize(
+      {kRoom, "--lights", kRoomLights, "--light", "sun=sun:0,0,-1", "--only", "sun", "-o", again});
+  const std::string sun =
+      YardSummary(folder, "sun.summary", {"--light", "sun=sun:0,0,-1", "--only", "sun"});
+  const ProcessResult twice = RunLightfit({"summarize", sun, again, "-o", sum});
+  EXPECT_EQ(twice.exit_code, 0) << twice.err;
+  EXPECT_THAT(twice.err,
+              AllOf(HasSubstr("warning: frame 1 is there more than once with different content ("),
+                    HasSubstr("sun.summary, "),
+                    HasSubstr("again.summary)")));
+  SummarySet set = *ReadSummaryFile(one);
+  set.frames.clear();
+  ASSERT_TRUE(WriteSummaryFile(old, set, "lightfit of old").ok());
+  const ProcessResult unknown = RunLightfit({"summarize", old, one, "-o", sum});
+  EXPECT_EQ(unknown.exit_code, 0) << unknown.err;
+  EXPECT_THAT(unknown.err, HasSubstr("warning: 1 of 2 frames are of summary files that do not"));
 }
 
 TEST(Summarize, OneBadFrameIsReportedAndTheRestGoOn) {
@@ -147,7 +191,10 @@ TEST(Summarize, ALightThatAFrameHasNothingOfStopsNoOther) {
                     Not(HasSubstr("light \"sun\""))));
   EXPECT_THAT(first.out, HasSubstr("lamp: 0 samples of 0 frames"));
   // It was reported then; the sum says so again and is complete.
-  const ProcessResult second = RunLightfit({"summarize", one, one, "-o", two});
+  const std::string other = folder.Path("other.summary");
+  const std::string frame = YardFrame(folder, "0002.exr");
+  EXPECT_EQ(RunLightfit(Joined({"summarize", frame, "-o", other}, lights)).exit_code, 3);
+  const ProcessResult second = RunLightfit({"summarize", one, other, "-o", two});
   EXPECT_EQ(second.exit_code, 0) << second.err;
   EXPECT_THAT(second.err, StartsWith("lightfit: warning: light \"lamp\": nothing of it in 2 of 2"));
   const std::string json = folder.Path("out.json");
@@ -206,7 +253,8 @@ TEST(Summarize, OnlyLikeThingsAreAdded) {
   ExpectError(RunLightfit({"summarize", l2, kYard, "--lights", kYardLights, "-o", sum}),
               2,
               {"0001.exr", "--metric is l1-edge"});
-  RunSummarize({l2, kYard, "--lights", kYardLights, "--metric", "l2", "-o", sum});
+  const std::string frame = YardFrame(folder, "0002.exr");
+  RunSummarize({l2, frame, "--lights", kYardLights, "--metric", "l2", "-o", sum});
 }
 
 TEST(Summarize, FlagsThatMeanNothingAreRefused) {
@@ -269,7 +317,12 @@ TEST(FitSummary, FlagsOfReadBacksAreRefusedWithTheReason) {
 TEST(FitSummary, FilesMayBeNamedInAnyOrder) {
   const TemporaryFolder folder;
   const std::string a = YardSummary(folder, "a.summary"), b = folder.Path("b.summary");
-  RunSummarize({a, a, "-o", b});
+  RunSummarize({YardFrame(folder, "0002.exr"),
+                YardFrame(folder, "0003.exr"),
+                "--lights",
+                kYardLights,
+                "-o",
+                b});
   std::string json[2];
   for (int i = 0; i < 2; ++i) {
     const std::string path = folder.Path("out.json");

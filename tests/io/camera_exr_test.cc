@@ -397,7 +397,7 @@ TEST(CameraExr, PixelAspectComesFromTheFile) {
 void ExpectSameCamera(const std::string& exr, const std::string& scene, int frame) {
   const auto from_exr = ReadCameraExr(exr);
   ASSERT_TRUE(from_exr.ok()) << from_exr.status();
-  const auto from_scene = ReadCameraFile(scene, frame);
+  const auto from_scene = ReadCameraFile(scene, FrameNumber::Whole(frame));
   ASSERT_TRUE(from_scene.ok()) << from_scene.status();
   EXPECT_EQ(from_exr->width, from_scene->camera.width);
   EXPECT_EQ(from_exr->height, from_scene->camera.height);

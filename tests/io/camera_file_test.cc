@@ -136,7 +136,7 @@ TEST(CameraFile, ScenesGiveTheirFrames) {
   EXPECT_TRUE(
       eye.isApprox(Eigen::Vector4d(-1.1203148365020752, -11.0, 1.3448190689086914, 1.0), 1e-6));
   for (const int frame : {-1, 1, 1000}) {
-    EXPECT_TRUE(HasAll(ReadCameraFile(path, frame).status().message(),
+    EXPECT_TRUE(HasAll(ReadCameraFile(path, FrameNumber::Whole(frame)).status().message(),
                        {path, "frame " + std::to_string(frame), "it has 1"}));
   }
 }
@@ -153,8 +153,8 @@ TEST(CameraFile, SceneErrorsNameTheFrameAndField) {
        {"frames[0].camera_to_world"}},
       {R"({"frames":[{}],"height":6})", {"width"}},
       {R"({"frames":[{}],"width":8.5,"height":6})", {"width = 8.5"}},
-      {R"({"frames":{},"width":8,"height":6})", {"frame 0", "it has 0"}},
-      {R"({"frames":[3],"width":8,"height":6})", {"frame 0"}},
+      {R"({"frames":{},"width":8,"height":6})", {"frames: none"}},
+      {R"({"frames":[3],"width":8,"height":6})", {"frames[0]"}},
       {R"({})", {"no pose"}},
       {R"({"width":"wide"})", {"width", "wide"}},
       {"[]", {"JSON"}},

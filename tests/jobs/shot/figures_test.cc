@@ -28,7 +28,10 @@ class ThreeFrames : public ::testing::Test {
     job_.lights = {Light::Directional("sun, \"low\"", -Eigen::Vector3d::UnitZ())};
     job_.modes = {true, true, false};
     for (int i = 0; i < 3; ++i) {
-      job_.frames.push_back({"walk.exr", "walk", 10 + i});
+      ShotFrame& frame = job_.frames.emplace_back();
+      frame.path = "walk.exr";
+      frame.name = "walk";
+      frame.number = FrameNumber::Whole(10 + i);
       ShotRow row;
       row.frame = i;
       row.energy = 4.0;
