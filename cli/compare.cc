@@ -211,7 +211,7 @@ int RunCompare(const CompareFlags& flags) {
   int num_failed = PrintFailedLights(comparisons, plan.has_value());
   if (!flags.is_readback()) {
     const absl::StatusOr<std::vector<ListedLight>> lights = ListLights(flags.scene.lights);
-    if (lights.ok()) num_failed += PrintUnusable(*lights, "shadow");
+    if (lights.ok()) num_failed += PrintUnusable("shadow", *lights);
   }
   status = WriteOutputs(flags, *inputs, comparisons);
   if (!status.ok()) return Fail(kExitBadInput, status);

@@ -323,7 +323,7 @@ int RunRender(RenderFlags flags) {
     return Fail(kExitBadInput, status);
   }
   const absl::StatusOr<std::vector<ListedLight>> lights = ListLights(flags.scene.lights);
-  return lights.ok() && PrintUnusable(*lights, "shadow") > 0 ? kExitIncomplete : kExitOk;
+  return lights.ok() && PrintUnusable("shadow", *lights) > 0 ? kExitIncomplete : kExitOk;
 }
 
 }  // namespace

@@ -94,7 +94,8 @@ int RunShotVerb(const ShotFlags& flags) {
   for (const std::string& note : context.notes) PrintWarning(note);
   const std::vector<std::string> errors = ShotErrors(context);
   for (const std::string& error : errors) PrintError(error);
-  const int num_unusable = PrintUnusableLights(flags.fit, "matrix");
+  const absl::StatusOr<std::vector<ListedLight>> lights = ListLightsOfAnyFrame(flags.fit);
+  const int num_unusable = lights.ok() ? PrintUnusable("matrix", *lights) : 0;
   if (errors.empty() && num_unusable == 0) return kExitOk;
   return HasAnswer(context.rows) ? kExitIncomplete : kExitBadInput;
 }

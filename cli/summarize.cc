@@ -316,7 +316,10 @@ int RunSummarize(const SummarizeFlags& flags) {
   }
   std::fflush(stdout);
   const bool is_complete = PrintMissingFrames(*sum, sets, job->inputs);
-  if (job->HasReadbacks()) num_failed += PrintUnusableLights(flags.fit, "summary");
+  if (job->HasReadbacks()) {
+    const absl::StatusOr<std::vector<ListedLight>> lights = ListLightsOfAnyFrame(flags.fit);
+    if (lights.ok()) num_failed += PrintUnusable("summary", *lights);
+  }
   if (num_failed == 0 && is_complete) return kExitOk;
   const bool has_samples =
       std::any_of(sum->lights.begin(), sum->lights.end(), [](const LightSummary& light) {

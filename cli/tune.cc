@@ -139,7 +139,7 @@ int RunTune(const TuneFlags& flags) {
   }
   int num_failed = PrintFailedLights(*lights);
   const absl::StatusOr<std::vector<ListedLight>> listed = ListLights(flags.compare.scene.lights);
-  if (listed.ok()) num_failed += PrintUnusable(*listed, "matrix");
+  if (listed.ok()) num_failed += PrintUnusable("matrix", *listed);
   if (!flags.json_path.empty()) {
     status = WriteFitResultJson(flags.json_path,
                                 TunedToProto(WithStreamNames(flags.compare.scene.scene),

@@ -7,7 +7,6 @@
 #include "absl/strings/str_format.h"
 #include "base/text_file.h"
 #include "cli/flags/fit_inputs.h"
-#include "cli/flags/light_flags.h"
 #include "io/frames/exr_frame.h"
 #include "jobs/shot/judge.h"
 
@@ -201,14 +200,14 @@ absl::StatusOr<std::vector<ListedLight>> ListFrameLights(const FitFlags& flags) 
   return frame->ListLightsOf(flags.readback_path, frame->number());
 }
 
-int PrintUnusableLights(const FitFlags& flags, absl::string_view what) {
+absl::StatusOr<std::vector<ListedLight>> ListLightsOfAnyFrame(const FitFlags& flags) {
+  if (flags.lights.path.empty()) return ListFitLights(flags);
   const absl::StatusOr<std::optional<LightFrames>> frames = LightFrames::Read(flags.lights.path);
-  if (flags.lights.path.empty() || !frames.ok() || !frames->has_value()) {
-    const absl::StatusOr<std::vector<ListedLight>> lights = ListFitLights(flags);
-    return lights.ok() ? PrintUnusable(*lights, what) : 0;
-  }
-  const absl::StatusOr<LightsOfEntry> any = ListEntry(flags, **frames, 0);
-  return any.ok() ? PrintUnusable(any->lights, what) : 0;
+  if (!frames.ok()) return frames.status();
+  if (!frames->has_value()) return ListFitLights(flags);
+  absl::StatusOr<LightsOfEntry> any = ListEntry(flags, **frames, 0);
+  if (!any.ok()) return any.status();
+  return std::move(any->lights);
 }
 
 }  // namespace lightfit::cli

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "absl/strings/string_view.h"
 #include "base/frame_number.h"
 #include "cli/flags/fit_flags.h"
 #include "geometry/light.h"
@@ -67,8 +66,7 @@ class FrameInputs {
 // ListFitLights() of --lights for the read-back that is fitted.
 absl::StatusOr<std::vector<ListedLight>> ListFrameLights(const FitFlags& flags);
 
-// Says on stderr which lights of --lights are of no use in any frame, and returns how many they
-// are.
-int PrintUnusableLights(const FitFlags& flags, absl::string_view what);
+// The same for verbs of many frames: what is of no use is that in all of them.
+absl::StatusOr<std::vector<ListedLight>> ListLightsOfAnyFrame(const FitFlags& flags);
 
 }  // namespace lightfit::cli
