@@ -9,7 +9,7 @@
 #include "absl/strings/string_view.h"
 #include "geometry/camera.h"
 #include "io/camera_exr.h"
-#include "io/exr_input.h"
+#include "io/exr/input.h"
 
 namespace lightfit::internal {
 

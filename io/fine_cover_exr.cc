@@ -7,9 +7,9 @@
 #include "absl/strings/str_format.h"
 #include "geometry/resized_camera.h"
 #include "io/camera_exr_input.h"
-#include "io/exr_channels.h"
-#include "io/exr_depth.h"
-#include "io/exr_input.h"
+#include "io/exr/channels.h"
+#include "io/exr/depth.h"
+#include "io/exr/input.h"
 
 namespace lightfit {
 

@@ -5,7 +5,7 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
-#include "io/exr_input.h"
+#include "io/exr/input.h"
 #include "io/lights_file.h"
 #include "wire/light_proto.h"
 #include "wire/proto_json.h"

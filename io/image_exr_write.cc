@@ -16,7 +16,7 @@
 #include "absl/strings/str_format.h"
 #include "base/text_file.h"
 #include "io/camera_header.h"
-#include "io/exr_threads.h"
+#include "io/exr/threads.h"
 #include "wire/utf8.h"
 
 namespace lightfit {

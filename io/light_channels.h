@@ -13,7 +13,7 @@
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
 #include "geometry/light.h"
-#include "io/exr_channels.h"
+#include "io/exr/channels.h"
 #include "io/readback_exr.h"
 
 namespace lightfit::internal {

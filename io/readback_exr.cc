@@ -8,9 +8,9 @@
 #include "geometry/affine_depth.h"
 #include "geometry/sized_camera.h"
 #include "io/camera_exr_input.h"
-#include "io/exr_channels.h"
-#include "io/exr_depth.h"
-#include "io/exr_input.h"
+#include "io/exr/channels.h"
+#include "io/exr/depth.h"
+#include "io/exr/input.h"
 #include "io/header_lights.h"
 #include "io/light_channels.h"
 

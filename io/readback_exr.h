@@ -4,7 +4,7 @@
 // In:   an EXR file with a depth channel and shadow channels, the lights, and what the file means.
 // Out:  ReadbackFile: depth, bits and camera, owned; where they were found; one status per light.
 //
-// Depth is the channel "Z" or one that is called depth, in any part (io/exr_depth.h): a Z that
+// Depth is the channel "Z" or one that is called depth, in any part (io/exr/depth.h): a Z that
 // stands beside an X is a vector's, and two that are equally good are refused. Shadows are one
 // channel per light, "shadow.<light>", above 0.5 where that light is blocked, or one UINT channel
 // of bits. Optional, per light as well: "facing.<light>", above 0.5 where the surface faces the
@@ -40,7 +40,7 @@ struct ReadbackExrOptions {
   // Where the background begins: as Readback::background.
   std::optional<float> background;
 
-  // Empty: the best by io/exr_depth.h: "Z", "depth", "ViewLayer.Depth.Z", "depth.V" and so on.
+  // Empty: the best by io/exr/depth.h: "Z", "depth", "ViewLayer.Depth.Z", "depth.V" and so on.
   std::string depth_channel;
 
   // The view of a stereo file: "left". Empty: the only one that has a depth.

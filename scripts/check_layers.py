@@ -53,7 +53,8 @@ MAY_INCLUDE = {
     "render/shipped": f"{CORE} partition partition/shipped scenes render",
     "proto": "lightfit",
     "wire": WIRE,
-    "io": IO,
+    "io/exr": WIRE,
+    "io": f"{IO} io/exr",
     "jobs": IO,
     "jobs/schemes": f"{CORE} methods partition partition/* render render/shipped",
     "jobs/compare": f"{IO} jobs jobs/schemes methods partition/* render",
@@ -71,7 +72,7 @@ MAY_INCLUDE = {
     "fuzz": f"{IO} jobs scenes render calls",
     "bench": f"{JOBS} methods partition/* scenes render render/* picture tests",
     "bench/service.cc": f"{JOBS} bench calls server tests",
-    "tests": f"{EVERYTHING_BELOW_CLI} cli cli/*",
+    "tests": f"{EVERYTHING_BELOW_CLI} io/exr cli cli/*",
 }
 
 # Libraries that rooms must not know: what an engine links reads no files and speaks no protocol.

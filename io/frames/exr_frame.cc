@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "io/exr_input.h"
+#include "io/exr/input.h"
 #include "io/readback_exr.h"
 
 namespace lightfit {

@@ -1,9 +1,8 @@
 // Which channels of multi-part and stereo files are taken, and how they may be named.
-#include "io/exr_channels.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "io/exr/channels.h"
 #include "io/fine_cover_exr.h"
 #include "io/readback_exr.h"
 #include "tests/io/exr_file.h"

@@ -1,5 +1,3 @@
-#include "io/exr_claims.h"
-
 #include <OpenEXR/ImfCompression.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +5,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "io/exr/claims.h"
 #include "io/readback_exr.h"
 #include "tests/io/exr_file.h"
 #include "tests/io/testing.h"

@@ -1,4 +1,4 @@
-// io/exr_input.h
+// io/exr/input.h
 //
 // One OpenEXR file open for reading: its parts, and single channels laid out on the display window.
 // In:   a path.

@@ -1,4 +1,4 @@
-#include "io/exr_header.h"
+#include "io/exr/header.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -10,7 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/string_view.h"
-#include "io/exr_claims.h"
+#include "io/exr/claims.h"
 #include "wire/utf8.h"
 
 namespace lightfit::internal {

@@ -1,4 +1,4 @@
-// io/exr_depth.h
+// io/exr/depth.h
 //
 // Which channel of an EXR file is the depth, and of which view.
 // In:   the channels of an open file; the names that the user gave, if any.
@@ -17,7 +17,7 @@
 #include <string>
 
 #include "absl/status/statusor.h"
-#include "io/exr_channels.h"
+#include "io/exr/channels.h"
 
 namespace lightfit::internal {
 

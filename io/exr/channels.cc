@@ -1,4 +1,4 @@
-#include "io/exr_channels.h"
+#include "io/exr/channels.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "io/exr_claims.h"
+#include "io/exr/claims.h"
 
 #include <OpenEXR/ImfCompression.h>
 

@@ -1,4 +1,4 @@
-// io/exr_channels.h
+// io/exr/channels.h
 //
 // What the channels of an EXR file may be called, and which of them a name means.
 // In:   an open file.
@@ -16,7 +16,7 @@
 
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
-#include "io/exr_input.h"
+#include "io/exr/input.h"
 
 namespace lightfit::internal {
 

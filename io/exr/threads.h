@@ -1,4 +1,4 @@
-// io/exr_threads.h
+// io/exr/threads.h
 //
 // Threads in which OpenEXR compresses and decompresses; internal to io/.
 // In:   nothing.

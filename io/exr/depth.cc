@@ -1,4 +1,4 @@
-#include "io/exr_depth.h"
+#include "io/exr/depth.h"
 
 #include <algorithm>
 #include <iterator>

@@ -1,4 +1,4 @@
-// io/exr_claims.h
+// io/exr/claims.h
 //
 // What the header of a part of an OpenEXR file asks for, held against the size of the file.
 // In:   windows, tiles, compression and channels, as the header states them; the file's bytes.

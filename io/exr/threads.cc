@@ -1,4 +1,4 @@
-#include "io/exr_threads.h"
+#include "io/exr/threads.h"
 
 #include <OpenEXR/ImfThreading.h>
 

@@ -1,4 +1,4 @@
-#include "io/exr_input.h"
+#include "io/exr/input.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfDoubleAttribute.h>
@@ -28,9 +28,9 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/strip.h"
 #include "base/text_file.h"
-#include "io/exr_claims.h"
-#include "io/exr_header.h"
-#include "io/exr_threads.h"
+#include "io/exr/claims.h"
+#include "io/exr/header.h"
+#include "io/exr/threads.h"
 #include "wire/utf8.h"
 
 namespace lightfit::internal {
