@@ -41,4 +41,26 @@ absl::Status CheckWritable(absl::string_view flag, const std::string& path) {
   return absl::OkStatus();
 }
 
+absl::Status MakeOutputFolder(absl::string_view flag, const std::string& path) {
+  if (path.empty()) {
+    return absl::InvalidArgumentError(absl::StrCat(flag, " is empty, want a folder"));
+  }
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error || !std::filesystem::is_directory(path)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(flag,
+                     " ",
+                     path,
+                     ": the folder cannot be made: ",
+                     error ? error.message() : "there is a file of that name",
+                     "; choose another"));
+  }
+  if (access(path.c_str(), W_OK | X_OK) != 0) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(flag, " ", path, ": the folder is not writable; choose another"));
+  }
+  return absl::OkStatus();
+}
+
 }  // namespace lightfit

@@ -14,4 +14,7 @@ namespace lightfit {
 // not a folder. `flag` is the option that named it, for the message.
 absl::Status CheckWritable(absl::string_view flag, const std::string& path);
 
+// Makes the folder, with those above it, unless it is there; whether files can be created in it.
+absl::Status MakeOutputFolder(absl::string_view flag, const std::string& path);
+
 }  // namespace lightfit

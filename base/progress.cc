@@ -6,14 +6,22 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "base/verbose.h"
 
 namespace lightfit {
 namespace {
 
 constexpr double kPatience_s = 1.0;
 constexpr int kBarWidth = 30;  // characters
+
+// The steps are about equally long, so the time left is in proportion to the steps left.
+double SecondsLeft(int num_done, int num_steps, double elapsed_s) {
+  return elapsed_s * (num_steps - num_done) / num_done;
+}
 
 }  // namespace
 
@@ -27,36 +35,95 @@ std::string DurationText(double seconds) {
   return absl::StrFormat("%d h %d min", whole / 3600, whole % 3600 / 60);
 }
 
-Progress::Progress(int num_steps, bool quiet)
-    : num_steps_(std::max(num_steps, 1)), enabled_(!quiet && isatty(STDERR_FILENO) == 1) {}
+std::string ProgressLine(int num_done, int num_steps, double elapsed_s, const std::string& what) {
+  std::string line = absl::StrFormat("progress: %d of %d (%d %%), %s elapsed",
+                                     num_done,
+                                     num_steps,
+                                     int64_t{100} * num_done / std::max(num_steps, 1),
+                                     DurationText(elapsed_s));
+  if (num_done > 0) {
+    absl::StrAppend(
+        &line, ", ", DurationText(SecondsLeft(num_done, num_steps, elapsed_s)), " left");
+  }
+  if (!what.empty()) absl::StrAppend(&line, ": ", what);
+  return line;
+}
+
+ProgressOutput ProgressOutput::Stderr() {
+  return {.is_terminal = isatty(STDERR_FILENO) == 1, .write = [](const std::string& text) {
+            std::fputs(text.c_str(), stderr);
+            std::fflush(stderr);
+          }};
+}
+
+Progress::Progress(int num_steps, bool quiet, ProgressOutput output)
+    : num_steps_(std::max(num_steps, 1)),
+      output_(std::move(output)),
+      has_bar_(!quiet && output_.is_terminal && !IsVerbose()) {
+  if (!quiet && !output_.is_terminal) lines_ = std::thread([this] { WriteLines(); });
+}
 
 Progress::~Progress() {
-  if (shown_) std::fputs("\r\033[K", stderr);
+  SayStep();
+  if (lines_.joinable()) {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      is_over_ = true;
+    }
+    over_.notify_one();
+    lines_.join();
+  }
+  if (shown_) output_.write("\r\033[K");
 }
 
 void Progress::Begin(const std::string& what) {
+  SayStep();
+  begin_ = Clock::now();
+  const std::lock_guard<std::mutex> lock(mutex_);
   what_ = what;
-  Show();
+  ShowBar();
+}
+
+void Progress::SayStep() const {
+  if (what_.empty() || !IsVerbose()) return;
+  const std::chrono::duration<double> taken = Clock::now() - begin_;
+  Say(absl::StrFormat("%s: %.3f s", what_, taken.count()));
 }
 
 void Progress::Advance() {
+  const std::lock_guard<std::mutex> lock(mutex_);
   num_done_ = std::min(num_done_ + 1, num_steps_);
-  Show();
+  ShowBar();
 }
 
-void Progress::Show() {
-  if (!enabled_) return;
-  const double elapsed_s = std::chrono::duration<double>(Clock::now() - start_).count();
+double Progress::ElapsedSeconds() const {
+  return std::chrono::duration<double>(Clock::now() - start_).count();
+}
+
+void Progress::ShowBar() {
+  if (!has_bar_) return;
+  const double elapsed_s = ElapsedSeconds();
   if (elapsed_s < kPatience_s) return;
   shown_ = true;
   const int filled = kBarWidth * num_done_ / num_steps_;
-  const std::string bar = std::string(filled, '=') + std::string(kBarWidth - filled, ' ');
-  // The steps are about equally long, so the time left is in proportion to the steps left.
-  const double left_s = num_done_ > 0 ? elapsed_s * (num_steps_ - num_done_) / num_done_ : 0;
-  std::fprintf(stderr, "\r[%s] %d/%d", bar.c_str(), num_done_, num_steps_);
-  if (num_done_ > 0) std::fprintf(stderr, ", %s left", DurationText(left_s).c_str());
-  std::fprintf(stderr, "  %s\033[K", what_.c_str());
-  std::fflush(stderr);
+  std::string text = absl::StrFormat("\r[%s%s] %d/%d",
+                                     std::string(filled, '='),
+                                     std::string(kBarWidth - filled, ' '),
+                                     num_done_,
+                                     num_steps_);
+  if (num_done_ > 0) {
+    absl::StrAppend(
+        &text, ", ", DurationText(SecondsLeft(num_done_, num_steps_, elapsed_s)), " left");
+  }
+  absl::StrAppend(&text, "  ", what_, "\033[K");
+  output_.write(text);
+}
+
+void Progress::WriteLines() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (!over_.wait_for(lock, output_.line_every, [this] { return is_over_; })) {
+    output_.write(ProgressLine(num_done_, num_steps_, ElapsedSeconds(), what_) + "\n");
+  }
 }
 
 }  // namespace lightfit

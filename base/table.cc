@@ -1,6 +1,8 @@
 #include "base/table.h"
 
 #include <algorithm>
+#include <cstring>
+#include <utility>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
@@ -10,10 +12,13 @@ namespace {
 
 constexpr size_t kGap = 2;
 constexpr size_t kGroupGap = 4;
+constexpr size_t kMaxNameCharacters = 40;
 
 // Characters of UTF-8 text: all bytes but the continuation bytes 10xxxxxx.
-size_t Length(const std::string& text) {
-  return std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; });
+bool BeginsCharacter(char byte) { return (byte & 0xc0) != 0x80; }
+
+size_t Length(absl::string_view text) {
+  return std::count_if(text.begin(), text.end(), &BeginsCharacter);
 }
 
 std::string Spaces(size_t wanted, size_t have) {
@@ -26,6 +31,27 @@ std::string Line(std::string text) {
 }
 
 }  // namespace
+
+std::string Shortened(absl::string_view text, size_t max_characters) {
+  constexpr char kGone[] = "...";
+  const size_t length = Length(text);
+  if (length <= max_characters) return std::string(text);
+  const size_t kept = std::max<size_t>(max_characters, 8) - std::strlen(kGone);
+  const size_t at_begin = kept / 3, at_end = kept - at_begin;
+  std::string shortened;
+  size_t character = 0;
+  for (const char byte : text) {
+    character += BeginsCharacter(byte) ? 1 : 0;
+    if (character == at_begin + 1 && BeginsCharacter(byte)) shortened += kGone;
+    if (character <= at_begin || character > length - at_end) shortened += byte;
+  }
+  return shortened;
+}
+
+void Table::AddRow(std::vector<std::string> cells) {
+  if (cells.size() > 1) cells.front() = Shortened(cells.front(), kMaxNameCharacters);
+  rows_.push_back(std::move(cells));
+}
 
 void Table::AddColumn(const std::string& group, const std::string& name) {
   columns_.push_back({group, name});

@@ -8,9 +8,11 @@
 #include <filesystem>
 #include <fstream>
 #include <system_error>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "base/text_encoding.h"
 
 namespace lightfit {
 
@@ -34,7 +36,7 @@ bool WriteAll(int file, absl::string_view text) {
 
 }  // namespace
 
-absl::StatusOr<std::string> ReadTextFile(const std::string& path, int64_t max_bytes) {
+absl::StatusOr<std::string> ReadFileBytes(const std::string& path, int64_t max_bytes) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) {
     return absl::NotFoundError(absl::StrCat(path, ": no such file"));
@@ -55,6 +57,14 @@ absl::StatusOr<std::string> ReadTextFile(const std::string& path, int64_t max_by
     }
   }
   if (file.bad()) return absl::DataLossError(absl::StrCat(path, ": cannot be read to its end"));
+  return text;
+}
+
+absl::StatusOr<std::string> ReadTextFile(const std::string& path, int64_t max_bytes) {
+  absl::StatusOr<std::string> bytes = ReadFileBytes(path, max_bytes);
+  if (!bytes.ok()) return bytes;
+  absl::StatusOr<std::string> text = DecodeText(*std::move(bytes));
+  if (!text.ok()) return InFile(path, text.status());
   return text;
 }
 

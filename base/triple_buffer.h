@@ -2,8 +2,7 @@
 //
 // The newest of what one thread makes, for another thread, and neither ever waits.
 // In:   the writer fills back() and publishes it.
-// Out:  the reader takes the newest that was published, if it has not had it yet, and reads
-// front().
+// Out:  the reader takes the newest that was published, if it has not had it yet: front().
 //
 // Of three buffers the writer has one, the reader one, and one lies between them. Both exchange
 // theirs for that in one atomic step: nothing is copied, and what is filled again keeps its memory.

@@ -28,7 +28,7 @@ absl::StatusOr<MatrixCheck> MatrixCheck::Create(const Readback& readback,
                                  surfaces->options,
                                  Eigen::Matrix3d::Identity(),
                                  /*with_edge_normals=*/false);
-  const AffineDepth affine_depth(readback.camera, readback.depth_kind);
+  const AffineDepth affine_depth = AffineDepthOf(readback);
   const Eigen::Matrix4d world_from_screen = readback.camera.WorldFromScreen();
   size_t pixel = 0;
   for (int y = 0; y < readback.height(); ++y) {

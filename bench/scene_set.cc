@@ -7,7 +7,7 @@
 #include "absl/strings/str_format.h"
 #include "render/clearance.h"
 #include "render/generator/dice.h"
-#include "render/scene_file.h"
+#include "scenes/scene_file.h"
 
 namespace lightfit {
 

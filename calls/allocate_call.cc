@@ -10,6 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "base/stop.h"
+#include "calls/checked_readback.h"
 #include "calls/message_text.h"
 #include "calls/pixel_buffer.h"
 #include "calls/request_fields.h"
@@ -84,11 +85,13 @@ absl::Status ReadReadback(const v1::AllocateRequest& request,
                           const ReadbackView& readback,
                           const std::vector<RequestLight>& lights,
                           const CallLimits& limits,
-                          AllocationTask* task) {
+                          AllocationTask* task,
+                          CheckedReadback* checked) {
   const absl::StatusOr<FitOptions> options = OptionsOfRequest(request.options());
   if (!options.ok()) return options.status();
   task->options = *options;
-  task->readback = readback.view();
+  *checked = CheckReadback(readback.view(), lights);
+  task->readback = checked->readback;
   int num_usable = 0;
   for (const RequestLight& light : lights) {
     task->lights.push_back(light.light);
@@ -212,9 +215,12 @@ absl::StatusOr<v1::Allocation> AnswerAllocate(const v1::AllocateRequest& request
   const absl::StatusOr<ReadbackView> readback =
       ReadbackView::Of(request.readback(), request.lights_size(), context.limits);
   if (!readback.ok()) return readback.status();
-  status = ReadReadback(request, *readback, *lights, context.limits, &task);
+  CheckedReadback checked;
+  status = ReadReadback(request, *readback, *lights, context.limits, &task, &checked);
   if (!status.ok()) return status;
-  return Answer(request, &task);
+  absl::StatusOr<v1::Allocation> allocation = Answer(request, &task);
+  if (allocation.ok()) checked.PutInto(allocation->mutable_readback());
+  return allocation;
 }
 
 }  // namespace lightfit

@@ -11,6 +11,7 @@
 #include "absl/strings/str_join.h"
 #include "base/stop.h"
 #include "base/text_file.h"
+#include "calls/checked_readback.h"
 #include "calls/message_text.h"
 #include "calls/pixel_buffer.h"
 #include "calls/request_fields.h"
@@ -127,6 +128,7 @@ absl::StatusOr<v1::EvaluateResult> AnswerEvaluate(const v1::EvaluateRequest& req
       ReadbackView::Of(request.readback(), request.lights_size(), context.limits);
   if (!readback.ok()) return readback.status();
   std::optional<ReadbackView> before;
+  CheckedReadback before_checked;
   if (request.has_before()) {
     absl::StatusOr<ReadbackView> view =
         ReadbackView::Of(request.before(), request.lights_size(), context.limits);
@@ -134,20 +136,22 @@ absl::StatusOr<v1::EvaluateResult> AnswerEvaluate(const v1::EvaluateRequest& req
     if (status.ok()) status = ValidateReadback(view->view());
     if (!status.ok()) return InFile("before", status);
     before.emplace(*std::move(view));
+    before_checked = CheckReadback(before->view(), *lights, /*is_tracked=*/true);
   }
 
   std::vector<Light> usable;
   for (const RequestLight& light : *lights) {
     if (light.status.ok()) usable.push_back(light.light);
   }
+  const CheckedReadback checked = CheckReadback(readback->view(), *lights);
   const absl::StatusOr<Surfaces> surfaces =
-      FindSurfaces(readback->view(), LightMask(usable), options->samples);
+      FindSurfaces(checked.readback, LightMask(usable), options->samples);
 
   v1::EvaluateResult result;
   for (int i = 0; i < request.matrices_size(); ++i) {
     const v1::CandidateMatrix& candidate = request.matrices(i);
-    absl::StatusOr<v1::Evaluation> evaluation =
-        Evaluate(candidate, *lights, surfaces, before ? &before->view() : nullptr, *options);
+    absl::StatusOr<v1::Evaluation> evaluation = Evaluate(
+        candidate, *lights, surfaces, before ? &before_checked.readback : nullptr, *options);
     if (StopRequested()) return StoppedError();
     v1::Evaluation& entry = *result.add_evaluations();
     if (evaluation.ok()) entry = *evaluation;
@@ -159,6 +163,7 @@ absl::StatusOr<v1::EvaluateResult> AnswerEvaluate(const v1::EvaluateRequest& req
   result.mutable_readback()->set_source(request.readback().source());
   const Readback& view = readback->view();
   *result.mutable_readback()->mutable_camera() = CameraToProto(view.camera, view.depth_kind);
+  checked.PutInto(result.mutable_readback());
   *result.mutable_options() = FitOptionsToProto(*options);
   if (absl::Status status = CheckFinite(result, "result"); !status.ok()) return status;
   return result;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/stop.h"
+#include "calls/checked_readback.h"
 #include "calls/finished_result.h"
 #include "calls/pixel_buffer.h"
 #include "calls/request_fields.h"
@@ -84,7 +85,7 @@ absl::StatusOr<v1::FitResult> AnswerFit(const v1::FitRequest& request, const Cal
 }
 
 absl::StatusOr<v1::FitResult> AnswerFit(const v1::FitRequest& request,
-                                        const Readback& readback,
+                                        const Readback& given,
                                         const CallContext& context) {
   const StopScope stop_scope(context.stop);
   const absl::StatusOr<std::vector<RequestLight>> lights = LightsOfRequest(request.lights());
@@ -99,7 +100,9 @@ absl::StatusOr<v1::FitResult> AnswerFit(const v1::FitRequest& request,
   if (!map.ok()) return map.status();
   const absl::StatusOr<ClipConvention> clip = ClipOfRequest(request);
   if (!clip.ok()) return clip.status();
-  if (absl::Status status = ValidateReadback(readback); !status.ok()) return status;
+  if (absl::Status status = ValidateReadback(given); !status.ok()) return status;
+  const CheckedReadback checked = CheckReadback(given, *lights);
+  const Readback& readback = checked.readback;
 
   FitReport report;
   report.source = request.readback().source();
@@ -117,7 +120,9 @@ absl::StatusOr<v1::FitResult> AnswerFit(const v1::FitRequest& request,
                    : MatrixFitOf(light, surfaces, *map, *options, context.limits, foretells);
       });
   if (StopRequested()) return StoppedError();
-  return FinishedResult(report, *lights);
+  absl::StatusOr<v1::FitResult> result = FinishedResult(report, *lights);
+  if (result.ok()) checked.PutInto(result->mutable_readback());
+  return result;
 }
 
 }  // namespace lightfit

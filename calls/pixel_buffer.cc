@@ -227,6 +227,7 @@ absl::StatusOr<ReadbackHeader> ReadbackHeaderFromProto(const v1::Readback& proto
   ReadbackHeader header;
   header.camera = camera->camera;
   header.depth_kind = camera->depth_kind.value_or(DepthKind::kCameraZ);
+  if (proto.has_background()) header.background = static_cast<float>(proto.background());
   header.depth_format = *depth_format;
   header.shadow = *std::move(shadow);
   header.facing = *std::move(facing);
@@ -336,6 +337,7 @@ Readback ReadbackOf(const ReadbackHeader& header,
   readback.camera = header.camera;
   readback.depth = depth;
   readback.depth_kind = header.depth_kind;
+  readback.background = header.background;
   readback.shadow_bits = shadow_bits;
   readback.facing_bits = facing_bits;
   readback.facing_lights = header.facing.lights;

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -25,6 +26,7 @@ namespace lightfit {
 struct ReadbackHeader {
   Camera camera;
   DepthKind depth_kind = DepthKind::kCameraZ;
+  std::optional<float> background;  // as Readback::background
   v1::DepthFormat depth_format = v1::DEPTH_FORMAT_FLOAT32;
   BitsHeader shadow;
   BitsHeader facing, mapped;  // may be absent

@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_format.h"
 #include "base/stop.h"
+#include "calls/checked_readback.h"
 #include "calls/finished_result.h"
 #include "calls/request_fields.h"
 #include "calls/request_lights.h"
@@ -149,10 +150,12 @@ absl::StatusOr<TrackedFits> TrackSession::TrackMatrices(const std::vector<Reques
 }
 
 absl::StatusOr<v1::FitResult> TrackSession::Track(const v1::TrackFrame& frame,
-                                                  const Readback& pixels) {
+                                                  const Readback& given) {
   const absl::StatusOr<std::vector<RequestLight>> lights = LightsOfRequest(frame.lights());
   if (!lights.ok()) return lights.status();
-  if (absl::Status status = ValidateReadback(pixels); !status.ok()) return status;
+  if (absl::Status status = ValidateReadback(given); !status.ok()) return status;
+  const CheckedReadback checked = CheckReadback(given, *lights, /*is_tracked=*/true);
+  const Readback& pixels = checked.readback;
   if (plans_.has_value() && pixels.fine_cover != nullptr) {
     return absl::InvalidArgumentError(
         "readback.fine_cover: plans that are tracked do not look at it; leave it out, or leave out "
@@ -175,6 +178,7 @@ absl::StatusOr<v1::FitResult> TrackSession::Track(const v1::TrackFrame& frame,
   report.lights = std::move(tracked->fits);
   absl::StatusOr<v1::FitResult> result = FinishedResult(report, *lights);
   if (!result.ok()) return result.status();
+  checked.PutInto(result->mutable_readback());
   for (size_t i = 0; i < lights->size(); ++i) {
     if (!report.lights[i].matrix.ok()) continue;
     *result->mutable_lights(static_cast<int>(i))->mutable_shot() = tracked->shots[i];

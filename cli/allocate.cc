@@ -1,6 +1,7 @@
 #include "cli/allocate.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -12,8 +13,10 @@
 #include "base/output_file.h"
 #include "base/progress.h"
 #include "cli/allocate_inputs.h"
+#include "cli/command_line/standard_streams.h"
 #include "cli/exit_code.h"
 #include "cli/reports/allocate_report.h"
+#include "cli/reports/legend.h"
 #include "cli/summary_inputs.h"
 #include "geometry/map_size.h"
 #include "jobs/allocate_lights.h"
@@ -41,8 +44,8 @@ absl::StatusOr<AllocationReport> Allocate(const AllocateFlags& flags, const Allo
         progress.Begin(what);
       });
   if (!report.ok()) return report;
-  report->fit.source =
-      task.readback.has_value() ? flags.fit.readback_path : SourceText(flags.fit.summary_paths);
+  report->fit.source = task.readback.has_value() ? WithStreamNames(flags.fit.readback_path)
+                                                 : SourceText(flags.fit.summary_paths);
   report->fit.clip = flags.fit.clip;
   return report;
 }
@@ -55,8 +58,9 @@ std::string SourceLine(const AllocateFlags& flags, const AllocateInputs& inputs)
                            num_frames,
                            num_frames == 1 ? "frame" : "frames");
   }
-  return absl::StrFormat("%s: %d x %d pixels, final image %s times as wide",
-                         flags.fit.readback_path,
+  return absl::StrFormat("%s (%s): %d x %d pixels, final image %s times as wide",
+                         WithStreamNames(flags.fit.readback_path),
+                         inputs.notes.OriginText(),
                          inputs.readback->camera.width,
                          inputs.readback->camera.height,
                          FigureText(inputs.image_scale));
@@ -75,14 +79,15 @@ int PrintFailedLights(const AllocationReport& report) {
       ++num_failed;
     } else if (reached.has_value() && !reached->is_met) {
       PrintError(
-          absl::StrFormat("%s: %s pixels at the largest map, %d x %d; want %s: raise "
-                          "--max-side (%d) or the tolerance",
+          absl::StrFormat("%s: %s pixels at the largest map, %d x %d; want %s: raise --max-side "
+                          "(%d), or --tolerance %s can be kept",
                           name,
                           FigureText(reached->reached_px),
                           fit.matrix->map.width,
                           fit.matrix->map.height,
                           ToleranceText(*report.tolerance),
-                          report.rules.max_side));
+                          report.rules.max_side,
+                          ToleranceThatHolds(*report.tolerance, reached->reached_px)));
       ++num_failed;
     }
   }
@@ -104,6 +109,7 @@ void PrintMissingFrames(const AllocationReport& report, const SummarySet& summar
 std::function<int()> DeclareAllocate(CLI::App* app) {
   const auto flags = std::make_shared<AllocateFlags>();
   DeclareAllocateFlags(app, flags.get());
+  app->footer(app->get_footer() + LegendHelp(AllocationLegend()));
   return [flags] { return RunAllocate(*flags); };
 }
 
@@ -123,11 +129,14 @@ int RunAllocate(const AllocateFlags& flags) {
     if (!status.ok()) return Fail(kExitUsage, status);
   }
 
+  PrintWarnings(inputs->notes.Warnings());
+
   const absl::StatusOr<AllocationReport> report = Allocate(flags, inputs->task);
   if (!report.ok()) return Fail(kExitBadInput, report.status());
   if (!flags.fit.quiet) {
     const std::string source = SourceLine(flags, *inputs);
-    std::fputs(AllocationText(*report, source, inputs->image_scale).c_str(), stdout);
+    const std::string text = AllocationText(*report, source, inputs->image_scale, flags.fit.legend);
+    std::fputs(text.c_str(), stdout);
     std::fflush(stdout);
   }
   const int num_failed = PrintFailedLights(*report);
@@ -138,7 +147,11 @@ int RunAllocate(const AllocateFlags& flags) {
         WriteAllocationJson(flags.fit.json_path, AllocationMessage(*report, summaries.has_value()));
     if (!status.ok()) return Fail(kExitBadInput, status);
   }
-  return num_failed > 0 ? kExitIncomplete : kExitOk;
+  // A map that misses the tolerance is a map.
+  const bool has_map = std::any_of(report->fit.lights.begin(),
+                                   report->fit.lights.end(),
+                                   [](const LightFit& light) { return light.matrix.ok(); });
+  return has_map ? CodeFor(num_failed, num_failed + 1) : kExitBadInput;
 }
 
 }  // namespace lightfit::cli

@@ -45,6 +45,7 @@ absl::Status ReadReadbackSource(const AllocateFlags& flags, AllocateInputs* inpu
     inputs->image_scale = std::max(static_cast<double>(flags.image->width) / camera.width,
                                    static_cast<double>(flags.image->height) / camera.height);
   }
+  inputs->notes = std::move(fit->notes);
   inputs->readback = std::move(fit->file);
   inputs->task.readback = inputs->readback->View();
   inputs->task.light_status = inputs->readback->light_status;

@@ -10,12 +10,14 @@
 #include "absl/status/statusor.h"
 #include "cli/flags/allocate_flags.h"
 #include "io/readback_exr.h"
+#include "io/readback_notes.h"
 #include "jobs/allocate_lights.h"
 
 namespace lightfit::cli {
 
 struct AllocateInputs {
   std::optional<ReadbackFile> readback;  // task.readback refers to it
+  ReadbackNotes notes;                   // of it
   AllocationTask task;
   double image_scale = 1.0;  // pixels of the final image per pixel of the read-back
 };

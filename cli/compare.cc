@@ -12,13 +12,17 @@
 #include "base/output_file.h"
 #include "base/progress.h"
 #include "base/text_file.h"
+#include "cli/command_line/standard_streams.h"
 #include "cli/compare_inputs.h"
 #include "cli/exit_code.h"
 #include "cli/reports/compare_csv.h"
 #include "cli/reports/compare_report.h"
 #include "cli/reports/fit_report.h"
+#include "cli/reports/legend.h"
 #include "cli/reports/plan_report.h"
+#include "io/image_exr_write.h"
 #include "jobs/compare/json.h"
+#include "jobs/compare/masks.h"
 #include "picture/compare_page.h"
 #include "picture/png.h"
 
@@ -33,7 +37,15 @@ absl::Status CheckOutputs(const CompareFlags& flags) {
     absl::Status status = CheckWritable(flag, path);
     if (!status.ok()) return status;
   }
-  return absl::OkStatus();
+  if (flags.masks_path.empty()) return absl::OkStatus();
+  if (flags.is_readback()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--masks ",
+                     flags.masks_path,
+                     ": a read-back has no true shadows to find wrong pixels by, want a scene; or "
+                     "lightfit fit --footprint FILE.exr, which foretells them"));
+  }
+  return MakeOutputFolder("--masks", flags.masks_path);
 }
 
 Typeface FindTypeface() {
@@ -51,11 +63,24 @@ bool HasNext(const CompareInputs& inputs, size_t light) {
   return inputs.next_readback == nullptr || inputs.next_readback->file.light_status[light].ok();
 }
 
-std::vector<LightComparison> CompareAll(const CompareInputs& inputs, bool quiet) {
+// Nothing of a light that cannot be used: it has no truth.
+absl::Status WriteMasks(const std::string& path,
+                        const CompareStage& stage,
+                        const LightComparison& light) {
+  if (light.truth.empty()) return absl::OkStatus();
+  const absl::StatusOr<std::vector<ExrImage>> masks = MaskImages(light);
+  return masks.ok() ? WriteImageExr(path, stage.screen.camera, *masks) : masks.status();
+}
+
+// Images are kept for as long as their masks are being written.
+absl::StatusOr<std::vector<LightComparison>> CompareAll(const CompareFlags& flags,
+                                                        const CompareInputs& inputs) {
   const size_t steps_per_row = inputs.next != nullptr ? 2 : 1;
   const size_t num_steps = RowNames(inputs.options).size() * steps_per_row;
-  Progress progress(static_cast<int>(inputs.lights.size() * num_steps), quiet);
+  Progress progress(static_cast<int>(inputs.lights.size() * num_steps), flags.quiet);
   CompareOptions options = inputs.options;
+  options.keep_images = !flags.masks_path.empty();
+  const std::vector<std::string> mask_names = MaskFileNames(inputs.lights);
   std::vector<LightComparison> comparisons;
   for (size_t i = 0; i < inputs.lights.size(); ++i) {
     const Light& light = inputs.lights[i];
@@ -72,6 +97,12 @@ std::vector<LightComparison> CompareAll(const CompareInputs& inputs, bool quiet)
     for (size_t step = num_begun == 0 ? 0 : num_begun - 1; step < num_steps; ++step) {
       progress.Advance();
     }
+    if (!options.keep_images) continue;
+    LightComparison& done = comparisons.back();
+    absl::Status status = WriteMasks(flags.masks_path + "/" + mask_names[i], inputs.stage, done);
+    if (!status.ok()) return status;
+    for (ComparedRow& row : done.rows) row.image = {};
+    done.truth.clear();
   }
   return comparisons;
 }
@@ -141,7 +172,8 @@ absl::Status WriteOutputs(const CompareFlags& flags,
   if (!flags.json_path.empty()) {
     status.Update(WriteComparisonJson(
         flags.json_path,
-        ComparisonToProto(flags.scene.scene, inputs.stage, inputs.options, comparisons)));
+        ComparisonToProto(
+            WithStreamNames(flags.scene.scene), inputs.stage, inputs.options, comparisons)));
   }
   if (!flags.picture_path.empty()) status.Update(WritePicture(flags, inputs, comparisons));
   return status;
@@ -152,6 +184,7 @@ absl::Status WriteOutputs(const CompareFlags& flags,
 std::function<int()> DeclareCompare(CLI::App* app) {
   const auto flags = std::make_shared<CompareFlags>();
   DeclareCompareFlags(app, flags.get());
+  app->footer(app->get_footer() + LegendHelp(CompareLegend()));
   return [flags] { return RunCompare(*flags); };
 }
 
@@ -166,16 +199,23 @@ int RunCompare(const CompareFlags& flags) {
   if (!inputs.ok()) return Fail(kExitBadInput, inputs.status());
   for (const std::string& warning : inputs->warnings) PrintWarning(warning);
 
-  const std::vector<LightComparison> comparisons = CompareAll(*inputs, flags.quiet);
+  const absl::StatusOr<std::vector<LightComparison>> compared = CompareAll(flags, *inputs);
+  if (!compared.ok()) return Fail(kExitBadInput, compared.status());
+  const std::vector<LightComparison>& comparisons = *compared;
   if (!flags.quiet) {
-    const std::string text = CompareReportText(HeadingOf(*inputs), comparisons, flags.per_light);
+    const std::string text =
+        CompareReportText(HeadingOf(*inputs), comparisons, flags.per_light, flags.legend);
     std::fputs(text.c_str(), stdout);
     std::fflush(stdout);
   }
-  const int num_failed = PrintFailedLights(comparisons, plan.has_value());
+  int num_failed = PrintFailedLights(comparisons, plan.has_value());
+  if (!flags.is_readback()) {
+    const absl::StatusOr<std::vector<ListedLight>> lights = ListLights(flags.scene.lights);
+    if (lights.ok()) num_failed += PrintUnusable(*lights, "shadow");
+  }
   status = WriteOutputs(flags, *inputs, comparisons);
   if (!status.ok()) return Fail(kExitBadInput, status);
-  return num_failed > 0 ? kExitIncomplete : kExitOk;
+  return CodeFor(num_failed, static_cast<int>(comparisons.size()));
 }
 
 }  // namespace lightfit::cli

@@ -7,12 +7,15 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "base/suggest.h"
+#include "cli/command_line/standard_streams.h"
+#include "cli/flags/scene_needs.h"
 #include "render/sight.h"
 
 namespace lightfit::cli {
 namespace {
 
 absl::Status ReadSceneInputs(const CompareFlags& flags, CompareInputs* inputs) {
+  if (absl::Status status = CheckSceneNeeds(flags.scene); !status.ok()) return status;
   absl::StatusOr<std::vector<Light>> lights = SceneLights(flags.scene);
   if (!lights.ok()) return lights.status();
   inputs->lights = *std::move(lights);
@@ -43,6 +46,7 @@ FitFlags ReadbackFlags(const CompareFlags& flags) {
   FitFlags fit = flags.fit;
   fit.readback_path = flags.scene.scene;
   fit.lights = flags.scene.lights;
+  fit.only = flags.scene.only;
   fit.camera_path = flags.scene.camera;
   fit.frame = flags.scene.frame;
   return fit;
@@ -68,7 +72,11 @@ absl::Status ReadReadbackInputs(const CompareFlags& flags, CompareInputs* inputs
   absl::StatusOr<FitInputs> readback = ReadFitInputs(ReadbackFlags(flags));
   if (!readback.ok()) return readback.status();
   inputs->readback = std::make_unique<FitInputs>(*std::move(readback));
-  inputs->title = flags.scene.scene;
+  inputs->title = absl::StrCat(
+      WithStreamNames(flags.scene.scene), " (", inputs->readback->notes.OriginText(), ")");
+  for (std::string& warning : inputs->readback->notes.Warnings()) {
+    inputs->warnings.push_back(std::move(warning));
+  }
   inputs->lights = inputs->readback->lights;
   inputs->light_status = inputs->readback->file.light_status;
   absl::StatusOr<CompareStage> stage = MakeStage(inputs->readback->file.View());
@@ -137,6 +145,9 @@ absl::StatusOr<CompareStage> NextReadbackStage(const CompareFlags& flags, Compar
   if (!readback.ok()) return readback.status();
   inputs->next_readback = std::make_unique<FitInputs>(*std::move(readback));
   inputs->next_title = flags.crawl.next_readback_path;
+  for (std::string& warning : inputs->next_readback->notes.Warnings()) {
+    inputs->warnings.push_back(std::move(warning));
+  }
   return MakeStage(inputs->next_readback->file.View());
 }
 

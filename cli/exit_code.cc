@@ -5,47 +5,37 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_replace.h"
+#include "cli/command_line/option_words.h"
+#include "cli/command_line/standard_streams.h"
 
 namespace lightfit::cli {
 namespace {
 
-// The library knows options of its own and no command line.
-std::string WithFlags(absl::string_view message) {
-  return absl::StrReplaceAll(message,
-                             {{"options.search = kFocused", "--search focused"},
-                              {"options.cover = kReceivers", "--cover receivers"},
-                              {"options.metric = kL2", "--metric l2"},
-                              {"options.max_maps = ", "--maps "},
-                              {"options.texels = ", "--texels "},
-                              {"options.guard_texels = ", "--guard "},
-                              {": the guard of ", ": the --guard of "},
-                              {"options.each = ", "--map "},
-                              {"options.sizes.multiple = ", "--multiple "},
-                              {"options.sizes.min_side, max_side = ", "--min-side, --max-side "},
-                              {"options.sizes.min_side = ", "--min-side "},
-                              {"options.sizes: no ", "no "},
-                              {"rules.multiple = ", "--multiple "},
-                              {"rules.min_side, max_side = ", "--min-side, --max-side "},
-                              {"rules.min_side = ", "--min-side "},
-                              {"rules: no ", "no "},
-                              {" min_side ... max_side = ", " --min-side ... --max-side "},
-                              {"1 <= min_side <= max_side ", "1 <= --min-side <= --max-side "}});
-}
+// The library knows fields of its own, and no command line.
+std::string InWords(absl::string_view message) { return WithStreamNames(InOptionWords(message)); }
 
 }  // namespace
 
 void PrintError(absl::string_view message) {
-  std::fprintf(stderr, "lightfit: error: %s\n", WithFlags(message).c_str());
+  std::fprintf(stderr, "lightfit: error: %s\n", InWords(message).c_str());
 }
 
 void PrintWarning(absl::string_view message) {
-  std::fprintf(stderr, "lightfit: warning: %s\n", WithFlags(message).c_str());
+  std::fprintf(stderr, "lightfit: warning: %s\n", InWords(message).c_str());
+}
+
+void PrintWarnings(const std::vector<std::string>& messages) {
+  for (const std::string& message : messages) PrintWarning(message);
 }
 
 int Fail(ExitCode code, const absl::Status& status) {
   PrintError(status.message());
   return code;
+}
+
+ExitCode CodeFor(int num_failed, int num_all) {
+  if (num_failed == 0) return kExitOk;
+  return num_failed < num_all ? kExitIncomplete : kExitBadInput;
 }
 
 void PrintFailedLight(absl::string_view what,

@@ -10,14 +10,23 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_replace.h"
 #include "base/output_file.h"
 #include "base/progress.h"
+#include "base/text_file.h"
+#include "base/verbose.h"
+#include "cli/command_line/standard_streams.h"
 #include "cli/exit_code.h"
 #include "cli/fit_summary.h"
 #include "cli/flags/fit_inputs.h"
+#include "cli/reports/fit_csv.h"
 #include "cli/reports/fit_report.h"
+#include "cli/reports/legend.h"
 #include "cli/reports/plan_report.h"
+#include "io/image_exr_write.h"
+#include "io/readback_notes.h"
 #include "jobs/fit_comparison.h"
+#include "jobs/fit_images.h"
 #include "picture/fit_page.h"
 #include "picture/png.h"
 #include "picture/text.h"
@@ -27,8 +36,10 @@ namespace lightfit::cli {
 namespace {
 
 absl::Status CheckOutputs(const FitFlags& flags) {
-  for (const auto& [flag, path] :
-       {std::pair{"--json", flags.json_path}, std::pair{"--picture", flags.picture_path}}) {
+  for (const auto& [flag, path] : {std::pair{"--json", flags.json_path},
+                                   std::pair{"--csv", flags.csv_path},
+                                   std::pair{"--picture", flags.picture_path},
+                                   std::pair{"--footprint", flags.footprint_path}}) {
     if (path.empty()) continue;
     absl::Status status = CheckWritable(flag, path);
     if (!status.ok()) return status;
@@ -72,6 +83,20 @@ int PrintFailedLights(const std::vector<FitComparison>& comparisons, bool has_pl
   return num_failed;
 }
 
+// The stations of each light's search, where that is wanted.
+void SaySearches(const std::vector<FitComparison>& comparisons) {
+  for (const FitComparison& comparison : comparisons) {
+    if (!IsVerbose() || !comparison.final.ok()) continue;
+    for (const auto& step : comparison.final->matrix.search.trace) {
+      Say(absl::StrFormat("%s, %s: %d maps looked at, energy %g",
+                          comparison.light.name,
+                          absl::StrReplaceAll(std::string(step.station), {{"_", " "}}),
+                          step.evaluations,
+                          step.energy));
+    }
+  }
+}
+
 LightFit LightFitOf(const FitComparison& comparison, double guard_texels) {
   LightFit fit;
   fit.light = comparison.light;
@@ -95,7 +120,7 @@ FitReport JsonReport(const FitFlags& flags,
                      const ReadbackFile& file,
                      const std::vector<FitComparison>& comparisons) {
   FitReport report;
-  report.source = flags.readback_path;
+  report.source = WithStreamNames(flags.readback_path);
   report.camera = file.camera;
   report.depth_kind = file.depth_kind;
   report.options = options;
@@ -110,13 +135,13 @@ FitReport JsonReport(const FitFlags& flags,
 
 // The folder tells frames of one name apart: "yard_180/0001.exr".
 std::string TitleOf(const std::string& path) {
-  const std::filesystem::path file(path);
+  const std::filesystem::path file(WithStreamNames(path));
   return (file.parent_path().filename() / file.filename()).string();
 }
 
 // The file, and what of it was taken.
 std::string SourceText(const FitFlags& flags, const ReadbackFile& file) {
-  return absl::StrCat(flags.readback_path, " (", OriginText(file.origin), ")");
+  return absl::StrCat(WithStreamNames(flags.readback_path), " (", OriginText(file.origin), ")");
 }
 
 // What is computed before anything is printed, so that the progress bar has the terminal to itself.
@@ -170,15 +195,40 @@ Outcome FitAndDraw(const FitFlags& flags, const FitOptions& options, const FitIn
   return outcome;
 }
 
+// Of lights beyond those that the picture shows.
+void AddOutcome(Outcome added, Outcome* outcome) {
+  if (outcome->comparisons.empty()) {
+    *outcome = std::move(added);
+    return;
+  }
+  for (FitComparison& comparison : added.comparisons) {
+    outcome->comparisons.push_back(std::move(comparison));
+  }
+}
+
 absl::Status WriteOutputs(const FitFlags& flags,
                           const FitOptions& options,
-                          const ReadbackFile& file,
+                          const FitInputs& inputs,
                           const Outcome& outcome) {
+  const ReadbackFile& file = inputs.file;
   if (!flags.json_path.empty()) {
     const FitReport report = JsonReport(flags, options, file, outcome.comparisons);
     v1::FitResult result = FitResultToProto(report);
-    *result.mutable_readback()->mutable_origin() = OriginToProto(file.origin);
+    PutNotes(file, result.mutable_readback());
     absl::Status status = WriteFitResultJson(flags.json_path, result);
+    if (!status.ok()) return status;
+  }
+  if (!flags.csv_path.empty()) {
+    const std::string csv = FitCsv(inputs.View(), flags.map, options, outcome.comparisons);
+    absl::Status status = WriteTextFileAtomically(flags.csv_path, csv);
+    if (!status.ok()) return status;
+  }
+  if (!flags.footprint_path.empty()) {
+    const Readback readback = inputs.View();
+    const absl::StatusOr<std::vector<ExrImage>> images =
+        FitImages(readback, outcome.comparisons, options);
+    if (!images.ok()) return images.status();
+    absl::Status status = WriteImageExr(flags.footprint_path, readback.camera, *images);
     if (!status.ok()) return status;
   }
   if (flags.picture_path.empty()) return absl::OkStatus();
@@ -191,6 +241,7 @@ absl::Status WriteOutputs(const FitFlags& flags,
 std::function<int()> DeclareFit(CLI::App* app) {
   const auto flags = std::make_shared<FitFlags>();
   DeclareFitFlags(app, flags.get());
+  app->footer(app->get_footer() + LegendHelp(FitLegend() + "With --maps:\n" + PlanLegend()));
   return [flags] { return flags->summary_paths.empty() ? RunFit(*flags) : RunFitSummary(*flags); };
 }
 
@@ -202,25 +253,39 @@ int RunFit(const FitFlags& flags) {
   if (!status.ok()) return Fail(kExitUsage, status);
   status = CheckOutputs(flags);
   if (!status.ok()) return Fail(kExitBadInput, status);
-  const absl::StatusOr<FitInputs> inputs = ReadFitInputs(flags);
-  if (!inputs.ok()) return Fail(kExitBadInput, inputs.status());
-
-  const Outcome outcome = FitAndDraw(flags, options, *inputs);
+  const absl::StatusOr<std::vector<ListedLight>> lights = ListFitLights(flags);
+  if (!lights.ok()) return Fail(kExitBadInput, lights.status());
+  absl::StatusOr<FitInputs> inputs;  // of the first lights
+  Outcome outcome;
+  for (std::vector<ListedLight>& group : GroupsOfLights(*lights)) {
+    absl::StatusOr<FitInputs> of_group = ReadFitInputs(flags, std::move(group));
+    if (!of_group.ok()) return Fail(kExitBadInput, of_group.status());
+    AddOutcome(FitAndDraw(flags, options, *of_group), &outcome);
+    if (!inputs.ok()) inputs = std::move(of_group);
+  }
+  if (!flags.picture_path.empty() && outcome.comparisons.size() > inputs->lights.size()) {
+    PrintWarning(absl::StrCat(
+        "--picture shows the first ", inputs->lights.size(), " lights; choose others with --only"));
+  }
   if (!flags.quiet) {
     const Readback readback = inputs->View();
     const std::string source = SourceText(flags, inputs->file);
     const std::string text =
-        plan.has_value() ? PlanReportText(source, readback, *plan, outcome.comparisons)
-                         : FitReportText(source, readback, flags.map, options, outcome.comparisons);
+        plan.has_value()
+            ? PlanReportText(source, readback, *plan, outcome.comparisons, flags.legend)
+            : FitReportText(
+                  source, readback, flags.map, options, outcome.comparisons, flags.legend);
     std::fputs(text.c_str(), stdout);
     std::fflush(stdout);
   }
+  PrintWarnings(inputs->notes.Warnings());
+  SaySearches(outcome.comparisons);
   WarnAboutPixels(outcome.comparisons);
   PrintNotes(outcome.comparisons, options);
   const int num_failed = PrintFailedLights(outcome.comparisons, plan.has_value());
-  status = WriteOutputs(flags, options, inputs->file, outcome);
+  status = WriteOutputs(flags, options, *inputs, outcome);
   if (!status.ok()) return Fail(kExitBadInput, status);
-  return num_failed > 0 ? kExitIncomplete : kExitOk;
+  return CodeFor(num_failed, static_cast<int>(outcome.comparisons.size()));
 }
 
 }  // namespace lightfit::cli

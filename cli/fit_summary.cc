@@ -10,6 +10,7 @@
 #include "base/table.h"
 #include "cli/exit_code.h"
 #include "cli/reports/fit_report.h"
+#include "cli/reports/legend.h"
 #include "cli/summary_inputs.h"
 #include "jobs/fit_summary.h"
 #include "wire/result_json.h"
@@ -42,7 +43,8 @@ const char* EnergyMeaning(Metric metric) {
 std::string ReportText(const std::string& source,
                        MapSize map,
                        const FitOptions& options,
-                       const std::vector<SummaryFit>& fits) {
+                       const std::vector<SummaryFit>& fits,
+                       bool has_legend) {
   Table table;
   table.AddColumn("", "light");
   table.AddColumn("frames", "in");
@@ -71,17 +73,19 @@ std::string ReportText(const std::string& source,
                       : "-",
                   FigureText(fit.time_ms)});
   }
-  return absl::StrFormat(
-      "%s: %d frames; map %d x %d texels\nFinal: %s\n\n%s\n"
-      "Energy: %s;\nstart: that of the map the search began with. Wrong pixels, percentiles and "
-      "other methods\nneed a read-back: lightfit fit READBACK.exr.\n",
-      source,
-      fits.front().light->num_frames(),
-      map.width,
-      map.height,
-      MethodText(options),
-      table.Text(),
-      EnergyMeaning(options.metric));
+  const std::string legend = absl::StrCat(
+      "Energy: ",
+      EnergyMeaning(options.metric),
+      ";\nstart: that of the map the search began with. Wrong pixels, percentiles and other "
+      "methods\nneed a read-back: lightfit fit READBACK.exr.\n");
+  return absl::StrFormat("%s: %d frames; map %d x %d texels\nFinal: %s\n\n%s%s",
+                         source,
+                         fits.front().light->num_frames(),
+                         map.width,
+                         map.height,
+                         MethodText(options),
+                         table.Text(),
+                         LegendOrHint("fit", has_legend, legend));
 }
 
 absl::Status WriteJson(const FitFlags& flags,
@@ -125,7 +129,7 @@ int RunFitSummary(const FitFlags& flags) {
   }
   if (!flags.quiet) {
     const std::string title = TitleText(flags.summary_paths);
-    std::fputs(ReportText(title, flags.map, *options, fits).c_str(), stdout);
+    std::fputs(ReportText(title, flags.map, *options, fits, flags.legend).c_str(), stdout);
     std::fflush(stdout);
   }
   int num_failed = 0;
@@ -143,7 +147,7 @@ int RunFitSummary(const FitFlags& flags) {
     absl::Status status = WriteJson(flags, *options, fits);
     if (!status.ok()) return Fail(kExitBadInput, status);
   }
-  return num_failed > 0 ? kExitIncomplete : kExitOk;
+  return CodeFor(num_failed, static_cast<int>(fits.size()));
 }
 
 }  // namespace lightfit::cli

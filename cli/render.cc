@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -18,12 +19,16 @@
 #include "base/text_file.h"
 #include "cli/exit_code.h"
 #include "cli/flags/scene_flags.h"
+#include "cli/flags/scene_needs.h"
+#include "geometry/sized_camera.h"
+#include "io/camera_file.h"
 #include "io/readback_exr_write.h"
 #include "picture/canvas.h"
 #include "picture/png.h"
 #include "picture/render_page.h"
 #include "render/readback_image.h"
 #include "render/sight.h"
+#include "scenes/gltf_view.h"
 #include "wire/light_proto.h"
 #include "wire/proto_json.h"
 
@@ -44,7 +49,7 @@ constexpr char kExamples[] =
 
 struct RenderFlags {
   SceneFlags scene;
-  PixelSize size = {180, 180};
+  PixelSize size;  // 0x0: 180 pixels high
   std::string output_path;
   std::string picture_path;
   PixelSize picture_size;  // 0x0: as `size`
@@ -77,7 +82,11 @@ void DeclareFlags(CLI::App* app, RenderFlags* flags) {
   app->add_option("-o,--output", flags->output_path, "Write the read-back to this file")
       ->type_name("FILE.exr")
       ->group(group);
-  AddPixelSize(app, "--size", "Size of the read-back in pixels [180x180]", &flags->size);
+  AddPixelSize(app,
+               "--size",
+               "Size of the read-back in pixels [180x180, or as wide as the "
+               "camera of a glTF file says]",
+               &flags->size);
   app->add_option("--lights-out",
                   flags->lights_path,
                   "Write the lights to this file, for lightfit fit --lights")
@@ -91,7 +100,7 @@ void DeclareFlags(CLI::App* app, RenderFlags* flags) {
   app->add_option("--picture-light", flags->picture_light, "Which light to draw [the first]")
       ->type_name("LIGHT")
       ->group(group);
-  app->add_flag("--quiet", flags->quiet, "No table and no progress; errors and warnings only")
+  app->add_flag("-q,--quiet", flags->quiet, "No table and no progress; errors and warnings only")
       ->group(group);
   app->footer(kExamples);
 }
@@ -100,11 +109,16 @@ PixelSize PictureSize(const RenderFlags& flags) {
   return flags.picture_size.width > 0 ? flags.picture_size : flags.size;
 }
 
-absl::Status CheckOutputs(const RenderFlags& flags) {
+absl::Status CheckNeeds(const RenderFlags& flags) {
+  std::vector<std::string> missing;
   if (flags.output_path.empty() && flags.picture_path.empty()) {
-    return absl::InvalidArgumentError(
+    missing.emplace_back(
         "nothing to write: want -o FILE.exr for a read-back, --picture FILE.png, or both");
   }
+  return CheckSceneNeeds(flags.scene, std::move(missing));
+}
+
+absl::Status CheckOutputs(const RenderFlags& flags) {
   for (const auto& [flag, path] : {std::pair{"--output", flags.output_path},
                                    std::pair{"--picture", flags.picture_path},
                                    std::pair{"--lights-out", flags.lights_path}}) {
@@ -136,6 +150,29 @@ absl::StatusOr<Light> PictureLight(const RenderFlags& flags, const std::vector<L
                                                  ": there is no such light, want one of ",
                                                  absl::StrJoin(names, ", "),
                                                  DidYouMean(flags.picture_light, names)));
+}
+
+// 180 pixels high, and as wide as the camera says.
+PixelSize DefaultSize(const SceneFlags& flags) {
+  constexpr int kHeight = 180;
+  const std::string path = CameraPath(flags);
+  const absl::StatusOr<StatedCamera> file =
+      flags.view.has_value() || !IsGltf(path) ? StatedCamera() : ReadCameraFile(path);
+  const double ratio = file.ok() && !HasSize(file->camera) ? FrameRatio(file->camera) : 0.0;
+  const double width = ratio > 0.0 ? std::clamp(std::round(kHeight * ratio), 1.0, 8192.0) : kHeight;
+  return {static_cast<int>(width), kHeight};
+}
+
+// What is taken from the scene's file beside its triangles; empty when nothing.
+std::string TakenFromScene(const SceneFlags& flags) {
+  const bool has_camera = flags.camera.empty(), has_lights = TakesLightsOfScene(flags);
+  if (!has_camera && !has_lights) return "";
+  return absl::StrCat(has_camera ? "camera" : "",
+                      has_camera && has_lights ? " and " : "",
+                      has_lights ? "lights" : "",
+                      " of ",
+                      flags.scene,
+                      "\n");
 }
 
 // What the verb works on.
@@ -269,21 +306,24 @@ absl::Status WriteOutputs(const RenderFlags& flags, const Inputs& inputs, const 
   return WritePng(Canvas(outcome.picture), flags.picture_path);
 }
 
-int RunRender(const RenderFlags& flags) {
+int RunRender(RenderFlags flags) {
+  if (absl::Status status = CheckNeeds(flags); !status.ok()) return Fail(kExitBadInput, status);
+  if (flags.size.width == 0) flags.size = DefaultSize(flags.scene);
   if (absl::Status status = CheckOutputs(flags); !status.ok()) return Fail(kExitBadInput, status);
   const absl::StatusOr<Inputs> inputs = ReadInputs(flags);
   if (!inputs.ok()) return Fail(kExitBadInput, inputs.status());
   const absl::StatusOr<Outcome> outcome = Render(flags, *inputs);
   if (!outcome.ok()) return Fail(kExitBadInput, outcome.status());
   if (!flags.quiet) {
-    std::fputs(ReportText(*inputs, *outcome).c_str(), stdout);
+    std::fputs((TakenFromScene(flags.scene) + ReportText(*inputs, *outcome)).c_str(), stdout);
     std::fflush(stdout);
   }
   PrintWarnings(*inputs, *outcome);
   if (absl::Status status = WriteOutputs(flags, *inputs, *outcome); !status.ok()) {
     return Fail(kExitBadInput, status);
   }
-  return kExitOk;
+  const absl::StatusOr<std::vector<ListedLight>> lights = ListLights(flags.scene.lights);
+  return lights.ok() && PrintUnusable(*lights, "shadow") > 0 ? kExitIncomplete : kExitOk;
 }
 
 }  // namespace

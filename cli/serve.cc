@@ -13,6 +13,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "cli/exit_code.h"
+#include "cli/flags/choice_option.h"
 #include "server/server.h"
 
 namespace lightfit::cli {
@@ -150,8 +151,8 @@ void DeclareOperation(CLI::App* app, ServeFlags* flags) {
   app->add_option("--log", server.log_path, "Log, one JSON object a line [-, stderr]")
       ->type_name("FILE")
       ->group(group);
-  app->add_option("--log-level", server.log_level, "Least level that is logged [info]")
-      ->type_name("debug|info|warning|error")
+  AddChoice(
+      app, "--log-level", LogLevelWords(), &server.log_level, "Least level that is logged [info]")
       ->group(group);
   AddScaled<double>(app,
                     group,

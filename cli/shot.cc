@@ -8,6 +8,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "cli/exit_code.h"
+#include "cli/flags/fit_inputs.h"
+#include "cli/reports/legend.h"
 #include "cli/reports/shot_report.h"
 #include "jobs/shot/run.h"
 #include "picture/png.h"
@@ -31,6 +33,17 @@ void PrintResuming(const ShotContext& context) {
   std::fflush(stdout);
 }
 
+bool HasAnswer(const ShotRows& rows) {
+  for (const auto& frames : rows) {
+    for (const std::vector<ShotRow>& frame : frames) {
+      for (const ShotRow& row : frame) {
+        if (row.error.empty()) return true;
+      }
+    }
+  }
+  return false;
+}
+
 Typeface FindTypeface() {
   Typeface typeface = Typeface::Find();
   if (!typeface.found()) {
@@ -46,6 +59,7 @@ Typeface FindTypeface() {
 std::function<int()> DeclareShot(CLI::App* app) {
   const auto flags = std::make_shared<ShotFlags>();
   DeclareShotFlags(app, flags.get());
+  app->footer(app->get_footer() + LegendHelp(ShotLegend()));
   return [flags] { return RunShotVerb(*flags); };
 }
 
@@ -60,6 +74,11 @@ int RunShotVerb(const ShotFlags& flags) {
   status = MakeShotFolders(*job);
   if (!status.ok()) return Fail(kExitBadInput, status);
 
+  if (flags.fit.as_published && !flags.per_frame && !flags.tracked) {
+    PrintWarning(
+        "--as-published: per-frame and tracked only, as the published algorithm has no form that "
+        "fits one matrix to a whole shot");
+  }
   ShotContext context(*job);
   if (!job->quiet) PrintResuming(context);
   status = RunShot(&context);
@@ -68,13 +87,16 @@ int RunShotVerb(const ShotFlags& flags) {
   }
   if (!status.ok()) return Fail(kExitBadInput, status);
   if (!job->quiet) {
-    std::fputs(ShotReportText(context).c_str(), stdout);
+    std::fputs(ShotReportText(context, flags.fit.legend).c_str(), stdout);
     std::fflush(stdout);
   }
   for (const std::string& note : context.notes) PrintWarning(note);
   const std::vector<std::string> errors = ShotErrors(context);
   for (const std::string& error : errors) PrintError(error);
-  return errors.empty() ? kExitOk : kExitIncomplete;
+  const absl::StatusOr<std::vector<ListedLight>> lights = ListFitLights(flags.fit);
+  const int num_unusable = lights.ok() ? PrintUnusable(*lights, "matrix") : 0;
+  if (errors.empty() && num_unusable == 0) return kExitOk;
+  return HasAnswer(context.rows) ? kExitIncomplete : kExitBadInput;
 }
 
 }  // namespace lightfit::cli

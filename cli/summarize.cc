@@ -22,6 +22,7 @@
 #include "cli/exit_code.h"
 #include "cli/flags/fit_inputs.h"
 #include "cli/summary_inputs.h"
+#include "io/readback_notes.h"
 #include "jobs/fit_summary.h"
 #include "optimizer/fit.h"
 #include "wire/plan_proto.h"
@@ -62,6 +63,12 @@ absl::StatusOr<MatricesByLight> ReadMatrices(const std::string& path) {
   }
   return matrices;
 }
+
+// Of the read-backs, by their place among the inputs.
+struct SharedNotes {
+  std::mutex mutex;
+  ReadbackNotes notes;
+};
 
 struct Job {
   const SummarizeFlags& flags;
@@ -131,7 +138,10 @@ LightSummary SummarizeLight(const Job& job,
 }
 
 // `frame` counts the read-backs from 0.
-absl::StatusOr<SummarySet> SummarizeReadback(const Job& job, const std::string& path, int frame) {
+absl::StatusOr<SummarySet> SummarizeReadback(const Job& job,
+                                             const std::string& path,
+                                             int frame,
+                                             SharedNotes* notes) {
   FitFlags flags = job.flags.fit;
   flags.frame += frame;
   const absl::StatusOr<ReadbackExrOptions> options = ReadbackOptionsOf(flags);
@@ -140,6 +150,10 @@ absl::StatusOr<SummarySet> SummarizeReadback(const Job& job, const std::string& 
   if (!file.ok()) return file.status();
   if (absl::Status status = ValidateReadback(file->View()); !status.ok()) {
     return InFile(path, status);
+  }
+  {
+    const std::lock_guard<std::mutex> lock(notes->mutex);
+    notes->notes.Add(static_cast<size_t>(frame), path, *file);
   }
   // Folders differ between the machines of a farm, and would make files differ.
   const std::string name = std::filesystem::path(path).filename().string();
@@ -155,7 +169,8 @@ absl::StatusOr<SummarySet> SummarizeReadback(const Job& job, const std::string& 
 
 // Results in the order of the inputs.
 std::vector<absl::StatusOr<SummarySet>> SummarizeInputs(const Job& job,
-                                                        const std::vector<bool>& is_summary) {
+                                                        const std::vector<bool>& is_summary,
+                                                        SharedNotes* notes) {
   const std::vector<std::string>& inputs = job.flags.inputs;
   std::vector<int> frames(inputs.size(), 0);  // read-backs before this input
   for (size_t i = 1; i < inputs.size(); ++i) {
@@ -168,7 +183,7 @@ std::vector<absl::StatusOr<SummarySet>> SummarizeInputs(const Job& job,
   ParallelFor(count, /*chunk=*/1, NumProcessors(), [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       sets[i] = is_summary[i] ? ReadSummary(inputs[i], job.flags.fit.only)
-                              : SummarizeReadback(job, inputs[i], frames[i]);
+                              : SummarizeReadback(job, inputs[i], frames[i], notes);
       const std::lock_guard<std::mutex> lock(progress_mutex);
       progress.Begin(absl::StrCat("summarising ", inputs[i]));
       progress.Advance();
@@ -248,7 +263,7 @@ std::function<int()> DeclareSummarize(CLI::App* app) {
       ->required()
       ->type_name("READBACK.exr|FILE.summary");
   DeclareLightFlags(app, &flags->fit.lights, group);
-  DeclareOnlyFlag(app, group, &flags->fit);
+  DeclareOnlyFlag(app, group, &flags->fit.only);
   DeclareReadbackFlags(app, group, &flags->fit);
   DeclareCameraFlags(app, "Camera", &flags->fit);
   DeclareSummingFlags(app, &flags->fit.options);
@@ -262,7 +277,8 @@ std::function<int()> DeclareSummarize(CLI::App* app) {
       ->required()
       ->type_name("FILE.summary")
       ->group("Output");
-  app->add_flag("--quiet", flags->fit.quiet, "No figures and no progress; errors and warnings only")
+  app->add_flag(
+         "-q,--quiet", flags->fit.quiet, "No figures and no progress; errors and warnings only")
       ->group("Output");
   app->footer(kExamples);
   app->callback([app, flags] {
@@ -281,7 +297,9 @@ int RunSummarize(const SummarizeFlags& flags) {
   const absl::StatusOr<Job> job = JobOf(flags, is_summary);
   if (!job.ok()) return Fail(kExitBadInput, job.status());
 
-  const std::vector<absl::StatusOr<SummarySet>> sets = SummarizeInputs(*job, is_summary);
+  SharedNotes notes;
+  const std::vector<absl::StatusOr<SummarySet>> sets = SummarizeInputs(*job, is_summary, &notes);
+  PrintWarnings(notes.notes.Warnings());
   int num_failed = 0;
   const absl::StatusOr<SummarySet> sum = SumOf(sets, flags.inputs, &num_failed);
   if (!sum.ok()) return Fail(kExitBadInput, sum.status());
@@ -290,10 +308,23 @@ int RunSummarize(const SummarizeFlags& flags) {
     status = WriteSummaryFile(flags.output_path, *sum, absl::StrCat("lightfit ", kVersion));
   }
   if (!status.ok()) return Fail(kExitBadInput, status);
-  if (!flags.fit.quiet) std::fputs(ReportText(*sum).c_str(), stdout);
+  if (!flags.fit.quiet) {
+    const std::string origin = notes.notes.OriginText();
+    if (!origin.empty()) std::printf("read-backs: %s\n", origin.c_str());
+    std::fputs(ReportText(*sum).c_str(), stdout);
+  }
   std::fflush(stdout);
   const bool is_complete = PrintMissingFrames(*sum, sets, is_summary);
-  return num_failed > 0 || !is_complete ? kExitIncomplete : kExitOk;
+  if (!job->lights.empty()) {
+    const absl::StatusOr<std::vector<ListedLight>> lights = ListFitLights(flags.fit);
+    if (lights.ok()) num_failed += PrintUnusable(*lights, "summary");
+  }
+  if (num_failed == 0 && is_complete) return kExitOk;
+  const bool has_samples =
+      std::any_of(sum->lights.begin(), sum->lights.end(), [](const LightSummary& light) {
+        return light.total.num_frames > 0;
+      });
+  return has_samples ? kExitIncomplete : kExitBadInput;
 }
 
 }  // namespace lightfit::cli

@@ -6,6 +6,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "base/text_file.h"
+#include "cli/command_line/standard_streams.h"
 #include "cli/flags/choices.h"
 #include "cli/flags/fit_inputs.h"
 #include "jobs/fit_summary.h"
@@ -71,11 +72,12 @@ absl::StatusOr<FitOptions> OptionsFor(const FitFlags& flags, const FitOptions& h
 
 std::string SourceText(std::vector<std::string> paths) {
   std::sort(paths.begin(), paths.end());
-  return absl::StrJoin(paths, ", ");
+  return WithStreamNames(absl::StrJoin(paths, ", "));
 }
 
 std::string TitleText(const std::vector<std::string>& paths) {
-  return paths.size() == 1 ? paths.front() : absl::StrCat(paths.size(), " summaries");
+  return paths.size() == 1 ? WithStreamNames(paths.front())
+                           : absl::StrCat(paths.size(), " summaries");
 }
 
 }  // namespace lightfit::cli

@@ -10,9 +10,11 @@
 #include "absl/strings/str_cat.h"
 #include "base/output_file.h"
 #include "base/progress.h"
+#include "cli/command_line/standard_streams.h"
 #include "cli/compare_inputs.h"
 #include "cli/exit_code.h"
 #include "cli/reports/fit_report.h"
+#include "cli/reports/legend.h"
 #include "cli/reports/tune_report.h"
 #include "jobs/tune/journal.h"
 #include "jobs/tune/json.h"
@@ -103,6 +105,7 @@ int PrintFailedLights(const std::vector<TunedLight>& lights) {
 std::function<int()> DeclareTune(CLI::App* app) {
   const auto flags = std::make_shared<TuneFlags>();
   DeclareTuneFlags(app, flags.get());
+  app->footer(app->get_footer() + LegendHelp(TuneLegend()));
   return [flags] { return RunTune(*flags); };
 }
 
@@ -129,18 +132,24 @@ int RunTune(const TuneFlags& flags) {
       TuneAll(*inputs, options, flags.quiet, &*journal);
   if (!lights.ok()) return Fail(kExitBadInput, lights.status());
   if (!flags.quiet) {
-    const std::string text = TuneReportText(HeadingOf(*inputs, options), options, *lights);
+    const std::string text =
+        TuneReportText(HeadingOf(*inputs, options), options, *lights, flags.compare.legend);
     std::fputs(text.c_str(), stdout);
     std::fflush(stdout);
   }
-  const int num_failed = PrintFailedLights(*lights);
+  int num_failed = PrintFailedLights(*lights);
+  const absl::StatusOr<std::vector<ListedLight>> listed = ListLights(flags.compare.scene.lights);
+  if (listed.ok()) num_failed += PrintUnusable(*listed, "matrix");
   if (!flags.json_path.empty()) {
-    status = WriteFitResultJson(
-        flags.json_path,
-        TunedToProto(flags.compare.scene.scene, inputs->stage, options, flags.clip, *lights));
+    status = WriteFitResultJson(flags.json_path,
+                                TunedToProto(WithStreamNames(flags.compare.scene.scene),
+                                             inputs->stage,
+                                             options,
+                                             flags.clip,
+                                             *lights));
     if (!status.ok()) return Fail(kExitBadInput, status);
   }
-  return num_failed > 0 ? kExitIncomplete : kExitOk;
+  return CodeFor(num_failed, static_cast<int>(lights->size()));
 }
 
 }  // namespace lightfit::cli

@@ -1,5 +1,6 @@
 # What `cmake --install` puts where: the core with its headers, the packages that find_package(lightfit)
-# and pkg-config find, the schema, the licence, and the program. Included after the targets exist.
+# and pkg-config find, the schema, the licence, and the program with its manual and
+# completion. Included after the targets exist.
 #
 #   find_package(lightfit REQUIRED)
 #   target_link_libraries(engine PRIVATE lightfit::optimizer)    #include "lightfit/optimizer/fit.h"
@@ -21,6 +22,21 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/proto/lightfit
   DESTINATION ${CMAKE_INSTALL_DATADIR}/lightfit/proto FILES_MATCHING PATTERN "*.proto")
 if(TARGET lightfit)
   install(TARGETS lightfit RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  # What shells complete by and the manual are what the program itself prints.
+  set(share ${PROJECT_BINARY_DIR}/share)
+  add_custom_command(OUTPUT ${share}/stamp
+    COMMAND ${CMAKE_COMMAND} -E make_directory ${share}/man ${share}/bash ${share}/zsh ${share}/fish
+    COMMAND lightfit man --folder ${share}/man
+    COMMAND lightfit completion bash > ${share}/bash/lightfit
+    COMMAND lightfit completion zsh > ${share}/zsh/_lightfit
+    COMMAND lightfit completion fish > ${share}/fish/lightfit.fish
+    COMMAND ${CMAKE_COMMAND} -E touch ${share}/stamp
+    DEPENDS lightfit VERBATIM)
+  add_custom_target(lightfit_share ALL DEPENDS ${share}/stamp)
+  install(DIRECTORY ${share}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+  install(DIRECTORY ${share}/bash/ DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+  install(DIRECTORY ${share}/zsh/ DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+  install(DIRECTORY ${share}/fish/ DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 endif()
 
 install(EXPORT lightfitTargets NAMESPACE lightfit:: DESTINATION ${LIGHTFIT_PACKAGE_DIR})

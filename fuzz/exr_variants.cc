@@ -8,6 +8,7 @@
 #include <OpenEXR/ImfMultiPartOutputFile.h>
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfTiledOutputPart.h>
 
 #include <cstdint>
@@ -51,18 +52,22 @@ struct Channel {
   const void* pixels;
 };
 
+struct Part {
+  const char* name;
+  const char* view;  // empty: of no view
+  std::vector<Channel> channels;
+};
+
 // The header says which compression, and whether there are tiles.
-void WriteVariant(const Imf::Header& header, const Image& image, const std::string& path) {
-  const std::pair<const char*, std::vector<Channel>> parts[] = {
-      {"depth", {{"Z", Imf::FLOAT, image.depth.data()}, {"shadow", Imf::UINT, image.mask.data()}}},
-      {"shadows",
-       {{"shadow.key", Imf::HALF, image.shadow.data()},
-        {"shadow.sun", Imf::HALF, image.shadow.data()}}}};
+void WriteParts(const Imf::Header& header,
+                const std::vector<Part>& parts,
+                const std::string& path) {
   std::vector<Imf::Header> headers;
   std::vector<Imf::FrameBuffer> pixels;
-  for (const auto& [name, channels] : parts) {
+  for (const auto& [name, view, channels] : parts) {
     Imf::Header& part = headers.emplace_back(header);
     part.setName(name);
+    if (*view != '\0') part.setView(view);
     part.channels() = Imf::ChannelList();
     Imf::FrameBuffer& slices = pixels.emplace_back();
     for (const Channel& channel : channels) {
@@ -85,6 +90,31 @@ void WriteVariant(const Imf::Header& header, const Image& image, const std::stri
   }
 }
 
+// Depth in a part of its own, beside words of bits, and shadows.
+void WriteVariant(const Imf::Header& header, const Image& image, const std::string& path) {
+  WriteParts(header,
+             {{"depth",
+               "",
+               {{"Z", Imf::FLOAT, image.depth.data()}, {"shadow", Imf::UINT, image.mask.data()}}},
+              {"shadows",
+               "",
+               {{"shadow.key", Imf::HALF, image.shadow.data()},
+                {"shadow.sun", Imf::HALF, image.shadow.data()}}}},
+             path);
+}
+
+// Two views, shadows of one in a part of their own.
+void WriteStereo(const Imf::Header& header, const Image& image, const std::string& path) {
+  const Channel depth = {"Z", Imf::FLOAT, image.depth.data()};
+  const Channel key = {"shadow.key", Imf::HALF, image.shadow.data()};
+  const Channel sun = {"shadow.sun", Imf::HALF, image.shadow.data()};
+  WriteParts(header,
+             {{"left.depth", "left", {depth}},
+              {"left.shadows", "left", {key, sun}},
+              {"right", "right", {depth, key, sun}}},
+             path);
+}
+
 }  // namespace
 
 bool WriteExrVariants(const std::string& path, const std::string& folder) {
@@ -105,6 +135,7 @@ bool WriteExrVariants(const std::string& path, const std::string& folder) {
       WriteVariant(header, image, folder + "/" + name);
     }
     header.compression() = Imf::ZIP_COMPRESSION;
+    WriteStereo(header, image, folder + "/stereo");
     header.setType(Imf::TILEDIMAGE);
     header.setTileDescription(Imf::TileDescription(16, 16));
     WriteVariant(header, image, folder + "/zip_tiled");

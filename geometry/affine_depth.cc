@@ -6,12 +6,12 @@
 
 namespace lightfit {
 
-AffineDepth::AffineDepth(const Camera& camera, DepthKind kind)
+AffineDepth::AffineDepth(const Camera& camera, DepthKind kind, float background)
     : kind_(kind),
       orthographic_(camera.orthographic),
       surface_min_(0.0),
-      surface_max_(kBackgroundDepth),
-      background_min_(kBackgroundDepth),
+      surface_max_(std::min(background, kBackgroundDepth)),
+      background_min_(surface_max_),
       background_max_(std::numeric_limits<double>::infinity()),
       scale_(1.0),
       offset_(0.0),

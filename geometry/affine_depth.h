@@ -12,20 +12,22 @@
 namespace lightfit {
 
 // Renderers write "nothing hit" as 1e10 (Cycles), infinity, or the largest float. World units.
-inline constexpr double kBackgroundDepth = 1e9;
+inline constexpr float kBackgroundDepth = 1e9F;
 
 // Turns depth values of any kind into affine depth d, one camera and kind at a time.
 class AffineDepth {
  public:
-  AffineDepth(const Camera& camera, DepthKind kind);
+  // Where a renderer's background begins before kBackgroundDepth, `background` says so (kCameraZ,
+  // kDistance).
+  AffineDepth(const Camera& camera, DepthKind kind, float background = kBackgroundDepth);
 
   // Affine depth of the value `depth` at the pixel with column x and row y (integers, the centre is
   // meant). Only meaningful where IsSurface(depth).
   double At(int x, int y, double depth) const;
 
   // Whether `depth` is a surface: finite, in front of the camera and nearer than the background.
-  // The background is at or beyond kBackgroundDepth (kCameraZ, kDistance) or on the far plane
-  // (NDC).
+  // The background is at or beyond kBackgroundDepth, or where it was said to begin (kCameraZ,
+  // kDistance), or on the far plane (NDC).
   bool IsSurface(double depth) const { return depth > surface_min_ && depth < surface_max_; }
 
   // Whether `depth` is neither a surface nor a background value: NaN, -inf, zero or negative

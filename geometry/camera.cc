@@ -14,8 +14,9 @@ namespace {
 // lengths (Hadamard's bound).
 constexpr double kSingularRatio = 1e-12;
 
-bool IsInvertible(const Eigen::Matrix3d& m) {
-  const double bound = m.row(0).norm() * m.row(1).norm() * m.row(2).norm();
+template <int n>
+bool IsInvertible(const Eigen::Matrix<double, n, n>& m) {
+  const double bound = m.rowwise().norm().prod();
   return m.allFinite() && bound > 0.0 && std::abs(m.determinant()) > kSingularRatio * bound;
 }
 
@@ -67,7 +68,7 @@ absl::Status ValidateCamera(const Camera& camera, DepthKind kind) {
         "camera: size = %dx%d, want at least 1x1 pixels", camera.width, camera.height));
   }
   if (!camera.camera_from_world.allFinite() ||
-      !IsInvertible(camera.camera_from_world.topLeftCorner<3, 3>()) ||
+      !IsInvertible<3>(camera.camera_from_world.topLeftCorner<3, 3>()) ||
       camera.camera_from_world.row(3) != Eigen::RowVector4d::UnitW()) {
     return absl::InvalidArgumentError(
         "camera.camera_from_world is singular, not finite or not affine: want a rotation (or a "
@@ -84,7 +85,9 @@ absl::Status ValidateCamera(const Camera& camera, DepthKind kind) {
         largest,
         kMaxValue));
   }
-  if (!IsInvertible(camera.screen_from_camera) ||
+  // How far the window is from the axis, its last column, does not make it singular.
+  if (!camera.screen_from_camera.allFinite() ||
+      !IsInvertible<2>(camera.screen_from_camera.topLeftCorner<2, 2>()) ||
       camera.screen_from_camera.row(2) != Eigen::RowVector3d::UnitZ()) {
     return absl::InvalidArgumentError(
         "camera.screen_from_camera is singular or not finite: want intrinsics in pixels with last "

@@ -35,9 +35,18 @@ Eigen::Matrix4d MapFromWorld(const Eigen::Matrix3d& map_from_ray,
 
 // H of a matrix that somebody else made: rows 1, 2 and 4 are H ray_from_world, with
 // RayFromWorld(light). The sign is that with w > 0 in front. InvalidArgument when the matrix is not
-// finite or singular, or its rays do not all leave the light (its centre of projection is
-// elsewhere).
+// finite or singular (IsSingular()), or its rays do not all leave the light (its centre of
+// projection is elsewhere).
 absl::StatusOr<Eigen::Matrix3d> MapFromRay(const Eigen::Matrix4d& map_from_world,
                                            const Light& light);
+
+// Whether the determinant of a homography cannot be told from zero: `share` of the sum of its six
+// terms' sizes, where `size` bounds the terms that each entry was summed from. It depends neither
+// on the units of rows and columns nor, up to rounding, on where the origin of the rays is; with
+// lengths of rows for the terms' sizes it would fall with the square of the origin's distance.
+bool IsSingular(const Eigen::Matrix3d& homography, const Eigen::Matrix3d& size, double share);
+inline bool IsSingular(const Eigen::Matrix3d& homography, double share) {
+  return IsSingular(homography, homography.cwiseAbs(), share);
+}
 
 }  // namespace lightfit

@@ -29,7 +29,9 @@ bool AnyField(Visitor visit) {
          visit(Words<Convention::ViewAxis>{&Convention::view_axis,
                                            {"looks-plus-z", "looks-minus-z"}}) ||
          visit(Words<Convention::NdcW>{&Convention::ndc_w, {"w-positive", "w-negative"}}) ||
-         visit(Words<Convention::NdcSpan>{&Convention::ndc_span, {"whole-frame", "shorter-side"}});
+         visit(
+             Words<Convention::NdcSpan>{&Convention::ndc_span, {"whole-frame", "shorter-side"}}) ||
+         visit(Words<Convention::FrameCentre>{&Convention::frame_centre, {"centred", "shifted"}});
 }
 
 bool SetWord(absl::string_view word, CameraConvention& convention) {
@@ -77,7 +79,7 @@ absl::StatusOr<CameraConvention> ParseCameraConvention(absl::string_view words) 
       return absl::InvalidArgumentError(absl::StrFormat(
           "camera convention: \"%s\" is not known, want openexr, mantra, pbrt, or of row-vectors, "
           "column-vectors, ndc-0-1, ndc-minus-1-1, y-down, y-up, looks-plus-z, looks-minus-z, "
-          "w-positive, w-negative, whole-frame, shorter-side",
+          "w-positive, w-negative, whole-frame, shorter-side, centred, shifted",
           word));
     }
   }

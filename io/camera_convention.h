@@ -30,13 +30,18 @@ struct CameraConvention {
   enum class NdcW { kPositive, kNegative };
   // Which extent of the frame the NDC range spans; the other extent goes beyond in proportion.
   enum class NdcSpan { kWholeFrame, kShorterSide };
+  // Where the camera's axis meets the frame. kNearMiddle is no limit, but doubt: further away the
+  // convention that puts it nearer the middle is the likelier one. kAnywhere: the lens is shifted,
+  // or the frame is a tile of a larger one.
+  enum class FrameCentre { kNearMiddle, kAnywhere };
 
-  Layout layout = Layout::kRowVectors;        // "row-vectors", "column-vectors"
-  NdcRange ndc_range = NdcRange::kZeroToOne;  // "ndc-0-1", "ndc-minus-1-1"
-  NdcY ndc_y = NdcY::kDown;                   // "y-down", "y-up"
-  ViewAxis view_axis = ViewAxis::kPlusZ;      // "looks-plus-z", "looks-minus-z"
-  NdcW ndc_w = NdcW::kPositive;               // "w-positive", "w-negative"
-  NdcSpan ndc_span = NdcSpan::kWholeFrame;    // "whole-frame", "shorter-side"
+  Layout layout = Layout::kRowVectors;                  // "row-vectors", "column-vectors"
+  NdcRange ndc_range = NdcRange::kZeroToOne;            // "ndc-0-1", "ndc-minus-1-1"
+  NdcY ndc_y = NdcY::kDown;                             // "y-down", "y-up"
+  ViewAxis view_axis = ViewAxis::kPlusZ;                // "looks-plus-z", "looks-minus-z"
+  NdcW ndc_w = NdcW::kPositive;                         // "w-positive", "w-negative"
+  NdcSpan ndc_span = NdcSpan::kWholeFrame;              // "whole-frame", "shorter-side"
+  FrameCentre frame_centre = FrameCentre::kNearMiddle;  // "centred", "shifted"
 
   static CameraConvention OpenExr() { return {}; }  // "openexr": also RenderMan
   static CameraConvention Mantra();                 // "mantra"

@@ -1,230 +1,30 @@
 #include "io/camera_exr.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "io/camera_matrices.h"
 
 namespace lightfit {
 
 namespace {
 
+using internal::CameraUnderConvention;
 using Convention = CameraConvention;
-
-// The attributes are single precision and products of several matrices.
-constexpr double kMatrixTolerance = 1e-4;
-
-// How far the axes of a rigid matrix may be from orthonormal.
-constexpr double kRigidTolerance = 1e-3;
-
-// Renderers round the frame's aspect to pixels and the pixel aspect to a few digits.
-constexpr double kPixelAspectTolerance = 0.01;
-
-// Width or height of the frame at distance 1. Beyond these the field of view is under 0.006 or over
-// 179.8 degrees: no lens, but some other matrix.
-constexpr double kMinFrameExtent = 1e-4;
-constexpr double kMaxFrameExtent = 1e3;
 
 absl::Status Refuse(const std::string& message) { return absl::InvalidArgumentError(message); }
 
-std::string RowText(const Eigen::RowVector4d& row) {
-  return absl::StrFormat("(%g, %g, %g, %g)", row(0), row(1), row(2), row(3));
-}
-
-// worldToCamera, column vectors, checked to be rigid; its last row is exact on return.
-absl::Status CheckPose(Convention::Layout layout, Eigen::Matrix4d& camera_from_world) {
-  const Eigen::RowVector4d last = camera_from_world.row(3);
-  if ((last - Eigen::RowVector4d::UnitW()).cwiseAbs().maxCoeff() > kMatrixTolerance) {
-    return Refuse(absl::StrFormat(
-        "worldToCamera: last %s = %s, want (0, 0, 0, 1)",
-        layout == Convention::Layout::kRowVectors ? "column (row vectors)" : "row (column vectors)",
-        RowText(last)));
-  }
-  const Eigen::Matrix3d axes = camera_from_world.topLeftCorner<3, 3>();
-  const Eigen::Matrix3d gram = axes * axes.transpose();
-  if ((gram - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > kRigidTolerance) {
-    return Refuse(
-        absl::StrFormat("worldToCamera: is not rigid, its axes have the lengths %g, %g, "
-                        "%g: want a rotation or mirror without scale",
-                        axes.row(0).norm(),
-                        axes.row(1).norm(),
-                        axes.row(2).norm()));
-  }
-  camera_from_world.row(3) = Eigen::RowVector4d::UnitW();
-  return absl::OkStatus();
-}
-
-// NDC of camera-space points, z forward: w is 1 (orthographic) or z (perspective) and
-// ndc = (scale_x X, scale_y Y) / w + centre.
-struct Projection {
-  bool orthographic = false;
-  double scale_x = 0, scale_y = 0;
-  double centre_x = 0, centre_y = 0;
-};
-
-// Takes ndc_from_camera apart; fails unless it is a projection of the stated kind.
-absl::StatusOr<Projection> TakeApart(const Eigen::Matrix4d& ndc_from_camera,
-                                     double distance_to_origin,
-                                     double forward,
-                                     Convention::NdcW ndc_w) {
-  const Eigen::Matrix4d& p = ndc_from_camera;
-  const double linear_scale = std::max(std::abs(p(0, 0)), std::abs(p(1, 1)));
-  const double tolerance = kMatrixTolerance * linear_scale;
-  Projection projection;
-  projection.orthographic = std::abs(p(3, 2)) <= tolerance;
-  const int w_column = projection.orthographic ? 3 : 2;
-  const int other_column = projection.orthographic ? 2 : 3;
-  // Translations lose digits with the camera's distance from the origin of the world.
-  const double offset_tolerance =
-      kMatrixTolerance * std::max(linear_scale, std::abs(p(3, 2))) * (1.0 + distance_to_origin);
-  const double other_tolerance = projection.orthographic ? tolerance : offset_tolerance;
-
-  const double w = p(3, w_column) * (projection.orthographic ? 1.0 : forward);
-  if (!(linear_scale > 0.0) || w == 0.0 || std::abs(p(3, 0)) > tolerance ||
-      std::abs(p(3, 1)) > tolerance || std::abs(p(3, other_column)) > other_tolerance) {
-    return Refuse(
-        absl::StrFormat("worldToNDC does not belong to worldToCamera: its w is %s times the "
-                        "camera-space point, want z alone (perspective) or 1 (orthographic)",
-                        RowText(p.row(3))));
-  }
-  if ((w > 0.0) != (ndc_w == Convention::NdcW::kPositive)) {
-    return Refuse(absl::StrFormat("worldToNDC: w is %s in front of the camera, want it %s",
-                                  w > 0.0 ? "positive" : "negative",
-                                  w > 0.0 ? "negative" : "positive"));
-  }
-  if (std::abs(p(0, 1)) > tolerance || std::abs(p(1, 0)) > tolerance ||
-      std::abs(p(0, other_column)) > other_tolerance ||
-      std::abs(p(1, other_column)) > other_tolerance) {
-    return Refuse(
-        absl::StrFormat("worldToNDC does not belong to worldToCamera: NDC x and y are %s and %s "
-                        "times the camera-space point, want them along the camera's own axes",
-                        RowText(p.row(0)),
-                        RowText(p.row(1))));
-  }
-  if (projection.orthographic && p(2, 2) * forward < 0.0) {
-    return Refuse("worldToNDC: depth falls in front of the camera, want it to grow");
-  }
-  const double column_sign = projection.orthographic ? 1.0 : forward;
-  projection.scale_x = p(0, 0) / std::abs(w);
-  projection.scale_y = p(1, 1) / std::abs(w);
-  projection.centre_x = p(0, w_column) * column_sign / std::abs(w);
-  projection.centre_y = p(1, w_column) * column_sign / std::abs(w);
-  return projection;
-}
-
-// Brings the projection to the standard: the frame is (0, 0) ... (1, 1), y down, so scale_y < 0.
-absl::Status Standardize(const Convention& convention, int width, int height, Projection& p) {
-  if (p.scale_x < 0.0) return Refuse("worldToNDC: x falls to the right of the camera");
-  if ((p.scale_y < 0.0) != (convention.ndc_y == Convention::NdcY::kDown)) {
-    return Refuse(absl::StrFormat("worldToNDC: y %s towards the camera's top",
-                                  p.scale_y < 0.0 ? "falls" : "grows"));
-  }
-  if (convention.ndc_range == Convention::NdcRange::kMinusOneToOne) {
-    p = {p.orthographic,
-         p.scale_x / 2.0,
-         p.scale_y / 2.0,
-         (p.centre_x + 1.0) / 2.0,
-         (p.centre_y + 1.0) / 2.0};
-  }
-  if (convention.ndc_y == Convention::NdcY::kUp) {
-    p.scale_y = -p.scale_y;
-    p.centre_y = 1.0 - p.centre_y;
-  }
-  if (convention.ndc_span == Convention::NdcSpan::kShorterSide) {
-    const double x_share = std::min(1.0, static_cast<double>(height) / width);
-    const double y_share = std::min(1.0, static_cast<double>(width) / height);
-    p.scale_x *= x_share;
-    p.scale_y *= y_share;
-    p.centre_x = 0.5 + (p.centre_x - 0.5) * x_share;
-    p.centre_y = 0.5 + (p.centre_y - 0.5) * y_share;
-  }
-  return absl::OkStatus();
-}
-
-absl::Status CheckPlausible(const Projection& p,
-                            int width,
-                            int height,
-                            const CameraExrOptions& options) {
-  if (!(std::abs(p.centre_x - 0.5) <= options.max_frame_shift) ||
-      !(std::abs(p.centre_y - 0.5) <= options.max_frame_shift)) {
-    return Refuse(absl::StrFormat(
-        "worldToNDC: the camera's axis meets the frame at (%.3g, %.3g) of its width and height, "
-        "want (0.5, 0.5) within max_frame_shift = %g",
-        p.centre_x,
-        p.centre_y,
-        options.max_frame_shift));
-  }
-  const double largest = std::max(1.0 / p.scale_x, -1.0 / p.scale_y);
-  const double smallest = std::min(1.0 / p.scale_x, -1.0 / p.scale_y);
-  if (!p.orthographic && !(smallest >= kMinFrameExtent && largest <= kMaxFrameExtent)) {
-    return Refuse(
-        absl::StrFormat("worldToNDC: the frame is %g by %g at distance 1, which is no lens",
-                        1.0 / p.scale_x,
-                        -1.0 / p.scale_y));
-  }
-  const double wanted = options.pixel_aspect > 0.0 ? options.pixel_aspect : 1.0;
-  const double pixel_aspect = (-p.scale_y * height) / (p.scale_x * width);
-  if (!(std::abs(pixel_aspect / wanted - 1.0) <= kPixelAspectTolerance)) {
-    return Refuse(absl::StrFormat(
-        "worldToNDC: a pixel of the %dx%d frame is %.4g times as wide as high, the file says %g: "
-        "if the renderer means it, pass pixel_aspect = %.4g",
-        width,
-        height,
-        pixel_aspect,
-        wanted,
-        pixel_aspect));
-  }
-  return absl::OkStatus();
-}
-
-// The camera as `options.convention` reads it.
-absl::StatusOr<Camera> CameraUnderConvention(const Eigen::Matrix4d& world_to_camera,
-                                             const Eigen::Matrix4d& world_to_ndc,
-                                             int width,
-                                             int height,
-                                             const CameraExrOptions& options) {
-  const Convention& convention = options.convention;
-  const bool rows = convention.layout == Convention::Layout::kRowVectors;
-  Eigen::Matrix4d camera_from_world = world_to_camera;
-  Eigen::Matrix4d ndc_from_world = world_to_ndc;
-  if (rows) {
-    camera_from_world.transposeInPlace();
-    ndc_from_world.transposeInPlace();
-  }
-  if (absl::Status status = CheckPose(convention.layout, camera_from_world); !status.ok()) {
-    return status;
-  }
-  const double forward = convention.view_axis == Convention::ViewAxis::kPlusZ ? 1.0 : -1.0;
-  absl::StatusOr<Projection> projection = TakeApart(ndc_from_world * camera_from_world.inverse(),
-                                                    camera_from_world.col(3).head<3>().norm(),
-                                                    forward,
-                                                    convention.ndc_w);
-  if (!projection.ok()) return projection.status();
-  if (absl::Status status = Standardize(convention, width, height, *projection); !status.ok()) {
-    return status;
-  }
-  if (absl::Status status = CheckPlausible(*projection, width, height, options); !status.ok()) {
-    return status;
-  }
-  Camera camera;
-  camera.width = width;
-  camera.height = height;
-  camera.orthographic = projection->orthographic;
-  camera.camera_from_world =
-      Eigen::Vector4d(1.0, 1.0, forward, 1.0).asDiagonal() * camera_from_world;
-  camera.screen_from_camera << projection->scale_x * width, 0.0, projection->centre_x * width,  //
-      0.0, projection->scale_y * height, projection->centre_y * height,                         //
-      0.0, 0.0, 1.0;
-  camera.near = options.near;
-  camera.far = options.far;
-  if (absl::Status status = ValidateCamera(camera); !status.ok()) return status;
-  return camera;
+// The whole of it, as the option has it.
+std::string WordsOf(const Convention& convention) {
+  const std::string words = CameraConventionWords(convention);
+  return words.empty() ? "openexr" : words;
 }
 
 // All 64 conventions.
@@ -242,32 +42,108 @@ std::vector<Convention> AllConventions() {
   return all;
 }
 
-// What to do about matrices that the stated convention does not fit: the fewest changes to it that
-// make them hold together.
-std::string WayOut(const Eigen::Matrix4d& world_to_camera,
-                   const Eigen::Matrix4d& world_to_ndc,
-                   int width,
-                   int height,
-                   CameraExrOptions options) {
+// The two matrices as a convention reads them.
+struct Reading {
+  Convention convention;
+  Camera camera;
+  int64_t num_changes = 0;  // words that differ from those stated
+};
+
+// How many words there are to be changed for it.
+int64_t NumWords(const Convention& convention, const Convention& stated) {
+  const std::string words = CameraConventionWords(convention, stated);
+  return words.empty() ? 0 : std::count(words.begin(), words.end(), ',') + 1;
+}
+
+// All but the stated one under which the matrices hold together, whatever the shift.
+std::vector<Reading> OtherReadings(const Eigen::Matrix4d& world_to_camera,
+                                   const Eigen::Matrix4d& world_to_ndc,
+                                   int width,
+                                   int height,
+                                   CameraExrOptions options) {
   const Convention stated = options.convention;
-  std::vector<std::string> fitting;
-  int64_t fewest = std::numeric_limits<int64_t>::max();
-  for (const Convention& convention : AllConventions()) {
+  std::vector<Reading> readings;
+  for (Convention convention : AllConventions()) {
+    convention.frame_centre = stated.frame_centre;
+    if (convention == stated) continue;
     options.convention = convention;
-    if (!CameraUnderConvention(world_to_camera, world_to_ndc, width, height, options).ok())
-      continue;
-    const std::string words = CameraConventionWords(convention, stated);
-    const int64_t changes = std::count(words.begin(), words.end(), ',') + 1;
-    if (changes < fewest) fitting.clear();
-    fewest = std::min(fewest, changes);
-    if (changes == fewest) fitting.push_back(absl::StrCat("\"", words, "\""));
+    absl::StatusOr<Camera> camera =
+        CameraUnderConvention(world_to_camera, world_to_ndc, width, height, options);
+    if (!camera.ok()) continue;
+    readings.push_back({convention, *std::move(camera), NumWords(convention, stated)});
   }
-  if (fitting.empty()) {
-    return "the two matrices hold together under no known convention: give the camera as a file";
+  return readings;
+}
+
+std::string CentreText(const Camera& camera) {
+  return absl::StrFormat("(%.4g, %.4g)",
+                         camera.screen_from_camera(0, 2) / camera.width,
+                         camera.screen_from_camera(1, 2) / camera.height);
+}
+
+std::string OptionText(const Reading& reading, bool with_centre) {
+  return absl::StrCat(
+      "--camera-convention \"",
+      WordsOf(reading.convention),
+      "\"",
+      with_centre ? absl::StrCat(" (axis at ", CentreText(reading.camera), " of the frame)") : "");
+}
+
+// What to do about matrices that the stated convention does not fit: the fewest changes to it that
+// make them hold together. Those with the axis in the very middle are the likeliest; of others no
+// shift tells, so that both NDC ranges are named.
+std::string WayOut(std::vector<Reading> readings, const Convention& stated) {
+  constexpr double kMiddle = 0.02;
+  if (readings.empty()) {
+    return "the two matrices hold together under no known convention: give the camera as a file, "
+           "--camera";
   }
-  return absl::StrCat("they would hold together under the camera convention ",
-                      absl::StrJoin(fitting, " or "),
+  const auto is_off = [](const Reading& reading) { return FrameShift(reading.camera) > kMiddle; };
+  const bool is_shifted = std::all_of(readings.begin(), readings.end(), is_off);
+  if (!is_shifted) std::erase_if(readings, is_off);
+  const auto changes_but_range = [&](const Reading& reading) {
+    Convention convention = reading.convention;
+    if (is_shifted) convention.ndc_range = stated.ndc_range;
+    return NumWords(convention, stated);
+  };
+  int64_t fewest = std::numeric_limits<int64_t>::max();
+  for (const Reading& reading : readings) fewest = std::min(fewest, changes_but_range(reading));
+  std::vector<std::string> options;
+  for (const Reading& reading : readings) {
+    if (changes_but_range(reading) == fewest) {
+      options.push_back(OptionText(reading, is_shifted));
+    }
+  }
+  return absl::StrCat("they would hold together under ",
+                      absl::StrJoin(options, " or "),
                       ": state it if that is what the renderer means");
+}
+
+// Whether another convention is likelier than the stated one, by the shift of the lens.
+absl::Status CheckShift(const Camera& camera,
+                        const std::vector<Reading>& readings,
+                        const Convention& stated) {
+  constexpr double kRounding = 1e-9;
+  const Reading* nearest = nullptr;
+  for (const Reading& reading : readings) {
+    const double less =
+        nearest == nullptr ? 1.0 : FrameShift(nearest->camera) - FrameShift(reading.camera);
+    const bool is_simpler = nearest != nullptr && reading.num_changes < nearest->num_changes;
+    if (less > kRounding || (less > -kRounding && is_simpler)) nearest = &reading;
+  }
+  if (nearest == nullptr || FrameShift(nearest->camera) >= FrameShift(camera) - kRounding) {
+    return absl::OkStatus();
+  }
+  Convention shifted = stated;
+  shifted.frame_centre = Convention::FrameCentre::kAnywhere;
+  return Refuse(absl::StrCat("worldToNDC: the camera's axis meets the frame at ",
+                             CentreText(camera),
+                             "; if the lens is shifted, state --camera-convention ",
+                             WordsOf(shifted),
+                             ", if the renderer means ",
+                             CentreText(nearest->camera),
+                             ", --camera-convention ",
+                             WordsOf(nearest->convention)));
 }
 
 }  // namespace
@@ -284,21 +160,31 @@ absl::StatusOr<Camera> CameraFromExrMatrices(const Eigen::Matrix4d& world_to_cam
     return Refuse(absl::StrFormat("pixel_aspect = %g, want 0 (as the file says) or more",
                                   options.pixel_aspect));
   }
-  if (!(options.max_frame_shift > 0.0)) {
-    return Refuse(
-        absl::StrFormat("max_frame_shift = %g, want more than 0", options.max_frame_shift));
-  }
   if (!world_to_camera.allFinite() || !world_to_ndc.allFinite()) {
     return Refuse(absl::StrFormat("%s: has values that are not finite, want 16 numbers",
                                   world_to_camera.allFinite() ? "worldToNDC" : "worldToCamera"));
   }
   absl::StatusOr<Camera> camera =
       CameraUnderConvention(world_to_camera, world_to_ndc, width, height, options);
-  if (camera.ok()) return camera;
-  return absl::Status(camera.status().code(),
-                      absl::StrCat(camera.status().message(),
-                                   "; ",
-                                   WayOut(world_to_camera, world_to_ndc, width, height, options)));
+  const Convention& stated = options.convention;
+  if (camera.ok() && (stated.frame_centre == Convention::FrameCentre::kAnywhere ||
+                      FrameShift(*camera) <= kLikelyFrameShift)) {
+    return camera;
+  }
+  std::vector<Reading> others =
+      OtherReadings(world_to_camera, world_to_ndc, width, height, options);
+  if (camera.ok()) {
+    if (absl::Status status = CheckShift(*camera, others, stated); !status.ok()) return status;
+    return camera;
+  }
+  return absl::Status(
+      camera.status().code(),
+      absl::StrCat(camera.status().message(), "; ", WayOut(std::move(others), stated)));
+}
+
+double FrameShift(const Camera& camera) {
+  return std::max(std::abs(camera.screen_from_camera(0, 2) / camera.width - 0.5),
+                  std::abs(camera.screen_from_camera(1, 2) / camera.height - 0.5));
 }
 
 }  // namespace lightfit

@@ -8,6 +8,10 @@
 // (0, 0) the upper left and (1, 1) the lower right of the display window. Nothing is guessed:
 // matrices that do not hold together under the stated convention are refused, and the message names
 // the words of io/camera_convention.h under which they would.
+//
+// Any lens shift holds together under both NDC ranges. So a camera's axis that lies further than
+// kLikelyFrameShift from the middle is refused where another convention puts it nearer, unless the
+// convention is stated to be "shifted"; else it is read.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,6 +24,11 @@
 
 namespace lightfit {
 
+// Distance of the principal point from the middle of the frame, in frame widths or heights,
+// whichever is more: of most lenses. A wrong NDC range moves it by 0.25 or more.
+inline constexpr double kLikelyFrameShift = 0.2;
+double FrameShift(const Camera& camera);
+
 struct CameraExrOptions {
   CameraConvention convention;
 
@@ -29,10 +38,6 @@ struct CameraExrOptions {
 
   // Width over height of a pixel; 0: the file's pixelAspectRatio, or 1 without one. >= 0.
   double pixel_aspect = 0.0;
-
-  // Largest distance of the principal point from the middle of the frame, in frame widths and
-  // heights. A wrong NDC range moves it by 0.25 or more; raise this for strong lens shifts. > 0.
-  double max_frame_shift = 0.2;
 };
 
 // `world_to_camera` and `world_to_ndc` hold the 16 numbers as stored: (r, c) is number 4 r + c.

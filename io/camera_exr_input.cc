@@ -22,6 +22,11 @@ std::optional<Eigen::Matrix4d> MatrixOf(const internal::ExrInput& exr,
   return matrix;
 }
 
+// Whether WriteReadbackExr() wrote them, so that they are known to be as the standard has them.
+bool IsOurs(const internal::ExrInput& exr, int part) {
+  return exr.MatrixAttribute(part, internal::ExactName("worldToNDC")).has_value();
+}
+
 struct Matrices {
   int part = 0;
   Eigen::Matrix4d world_to_camera, world_to_ndc;
@@ -54,7 +59,7 @@ absl::StatusOr<std::optional<Matrices>> MatricesOfOthers(const internal::ExrInpu
         found->world_to_ndc != matrices->world_to_ndc) {
       return absl::InvalidArgumentError(absl::StrFormat(
           "%s: %s has no worldToCamera and worldToNDC, and those of %s and %s differ: want them in "
-          "the part of the depth, or give the camera as a file",
+          "the part of the depth, or give the camera as a file, --camera",
           exr.path(),
           exr.quoted_part(part),
           exr.quoted_part(found->part),
@@ -79,7 +84,7 @@ absl::StatusOr<internal::CameraOfPart> internal::CameraFromExr(const ExrInput& e
   if (matrices && !view.empty() && !own_view.empty() && own_view != view) {
     return absl::InvalidArgumentError(absl::StrFormat(
         "%s: worldToCamera and worldToNDC are those of the view %s, and the depth is of %s: give "
-        "the camera as a file",
+        "the camera as a file, --camera",
         exr.path(),
         QuotedList({std::string(own_view)}),
         QuotedList({std::string(view)})));
@@ -93,19 +98,23 @@ absl::StatusOr<internal::CameraOfPart> internal::CameraFromExr(const ExrInput& e
     return absl::NotFoundError(absl::StrFormat(
         "%s: has no worldToCamera and worldToNDC attributes%s (matrices in its header: %s): let "
         "the "
-        "renderer write them, or give the camera as a file",
+        "renderer write them, or give the camera as a file, --camera",
         exr.path(),
         view.empty() ? "" : absl::StrCat(" of the view ", QuotedList({std::string(view)})),
         QuotedList(exr.MatrixNames(part))));
   }
   CameraExrOptions file_options = options;
   if (options.pixel_aspect == 0.0) file_options.pixel_aspect = exr.pixel_aspect(matrices->part);
+  const bool is_ours = IsOurs(exr, matrices->part);
+  if (is_ours) {
+    file_options.convention.frame_centre = CameraConvention::FrameCentre::kAnywhere;
+  }
   absl::StatusOr<Camera> camera = CameraFromExrMatrices(matrices->world_to_camera,
                                                         matrices->world_to_ndc,
                                                         exr.width(part),
                                                         exr.height(part),
                                                         file_options);
-  if (camera.ok()) return CameraOfPart{*std::move(camera), matrices->part};
+  if (camera.ok()) return CameraOfPart{*std::move(camera), matrices->part, is_ours};
   return absl::Status(camera.status().code(),
                       absl::StrCat(exr.path(), ": ", camera.status().message()));
 }

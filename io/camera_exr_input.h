@@ -19,7 +19,8 @@ std::string ExactName(const std::string& attribute);
 
 struct CameraOfPart {
   Camera camera;
-  int part = 0;  // whose attributes these are
+  int part = 0;           // whose attributes these are
+  bool is_exact = false;  // WriteReadbackExr() wrote them
 };
 
 // From the attributes of `part`, or of the other parts that have both and are of the same `view`

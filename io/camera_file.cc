@@ -10,6 +10,7 @@
 #include "absl/strings/str_format.h"
 #include "base/text_file.h"
 #include "geometry/clip.h"
+#include "scenes/gltf_view.h"
 #include "wire/camera_proto.h"
 #include "wire/matrix_proto.h"
 #include "wire/proto_json.h"
@@ -98,6 +99,15 @@ absl::StatusOr<StatedCamera> ParseCameraJson(absl::string_view json, int frame) 
 }
 
 absl::StatusOr<StatedCamera> ReadCameraFile(const std::string& path, int frame) {
+  if (IsGltf(path)) {
+    absl::StatusOr<Camera> camera = ReadGltfCamera(path);
+    if (!camera.ok()) return camera.status();
+    if (frame != 0) {
+      return absl::InvalidArgumentError(
+          absl::StrFormat("%s: has no frame %d: its camera stands still", path, frame));
+    }
+    return StatedCamera{*std::move(camera), std::nullopt};
+  }
   const absl::StatusOr<std::string> json = ReadTextFile(path);
   if (!json.ok()) return json.status();
   absl::StatusOr<StatedCamera> camera = ParseCameraJson(*json, frame);

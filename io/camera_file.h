@@ -3,6 +3,8 @@
 // Cameras from JSON files.
 // In:   a lightfit.v1.Camera in protobuf JSON, or a scene file with "frames" (below). Unknown
 //       fields are ignored.
+//       Or a .glb or .gltf file, "scene.glb:NAME" (scenes/gltf_view.h): its camera has no size yet
+//       (geometry/sized_camera.h).
 // Out:  Camera, and the depth kind if the file states one.
 //
 // A scene file has "width", "height" and frames[i] with "camera_to_world" and "projection": 4x4,

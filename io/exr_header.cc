@@ -1,22 +1,27 @@
 #include "io/exr_header.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/string_view.h"
+#include "io/exr_claims.h"
 #include "wire/utf8.h"
 
 namespace lightfit::internal {
 
 namespace {
 
-constexpr uint32_t kMultiPart = 0x1000;  // of the flags
+constexpr uint32_t kTiled = 0x200, kMultiPart = 0x1000;  // of the flags
 constexpr size_t kMaxNameBytes = 255;
 
 // A file with more is no read-back.
-constexpr int kMaxParts = 1024;
+constexpr size_t kMaxParts = 1024;
 constexpr int kMaxNames = 1 << 16;  // of attributes and channels, in all parts
 
 constexpr std::pair<absl::string_view, int64_t> kBytesOfTypes[] = {{"box2f", 16},
@@ -50,6 +55,8 @@ uint32_t ReadUint32(std::istream& file) {
   return bytes[0] | uint32_t{bytes[1]} << 8 | uint32_t{bytes[2]} << 16 | uint32_t{bytes[3]} << 24;
 }
 
+int64_t ReadInt32(std::istream& file) { return static_cast<int32_t>(ReadUint32(file)); }
+
 // Up to the 0 that ends it; longer than kMaxNameBytes when there is none.
 std::string ReadName(std::istream& file) {
   std::string name;
@@ -73,18 +80,21 @@ class HeaderCheck {
   }
 
   absl::Status Run() {
-    const bool is_multi_part = (ReadUint32(file_) & kMultiPart) != 0;
-    int num_parts = 0;
+    const uint32_t flags = ReadUint32(file_);
+    const bool is_multi_part = (flags & kMultiPart) != 0;
     for (bool ends_part = true;;) {
       const std::string name = ReadName(file_);
       if (name.empty()) {
-        if (!is_multi_part || ends_part) return absl::OkStatus();
+        if (!is_multi_part || ends_part) return CheckClaims();
         ends_part = true;
         continue;
       }
-      if (ends_part && ++num_parts > kMaxParts) {
-        return absl::InvalidArgumentError(
-            absl::StrFormat("has more than %d parts, want a read-back", kMaxParts));
+      if (ends_part) {
+        parts_.emplace_back().is_tiled = !is_multi_part && (flags & kTiled) != 0;
+        if (parts_.size() > kMaxParts) {
+          return absl::InvalidArgumentError(
+              absl::StrFormat("has more than %d parts, want a read-back", kMaxParts));
+        }
       }
       ends_part = false;
       if (absl::Status status = CheckAttribute(name); !status.ok()) return status;
@@ -96,12 +106,48 @@ class HeaderCheck {
   }
 
  private:
+  // Of all parts, once it is known how many bytes are left for their pixels.
+  absl::Status CheckClaims() {
+    if (!file_) return absl::OkStatus();  // cut within the last 0, which OpenEXR sees
+    const int64_t bytes_left = num_bytes_ - file_.tellg();
+    for (size_t i = 0; i < parts_.size(); ++i) {
+      absl::Status status = CheckExrClaims(parts_[i], bytes_left);
+      if (!status.ok()) {
+        return absl::Status(status.code(), absl::StrCat("part ", i, " ", status.message()));
+      }
+    }
+    return absl::OkStatus();
+  }
+
+  // What the value that begins here, which is as its type should be, says about the part's pixels.
+  void NoteClaim(absl::string_view name, absl::string_view type, int64_t size) {
+    ExrClaims& part = parts_.back();
+    if (name == "dataWindow" && type == "box2i") {
+      const int64_t x_min = ReadInt32(file_), y_min = ReadInt32(file_);
+      part.width = ReadInt32(file_) - x_min + 1;
+      part.height = ReadInt32(file_) - y_min + 1;
+    } else if (name == "tiles" && type == "tiledesc") {
+      part.tile_width = ReadUint32(file_);
+      part.tile_height = ReadUint32(file_);
+    } else if (name == "compression" && type == "compression") {
+      part.compression = file_.get();
+    } else if (name == "chunkCount" && type == "int") {
+      part.chunk_count = ReadInt32(file_);
+    } else if (name == "type" && type == "string") {
+      std::string value(static_cast<size_t>(std::min<int64_t>(size, kMaxNameBytes)), '\0');
+      file_.read(value.data(), static_cast<std::streamsize>(value.size()));
+      part.is_tiled = absl::StrContains(value, "tile");
+    }
+  }
+
   // Of the list of channels that begins here.
   int64_t BytesOfChannels() {
-    constexpr int64_t kBytesAfterName = 16;
+    constexpr int64_t kBytesAfterType = 12;
     const int64_t begin = file_.tellg();
     while (file_ && !ReadName(file_).empty()) {
-      file_.seekg(kBytesAfterName, std::ios::cur);
+      constexpr uint32_t kHalf = 1;
+      parts_.back().bytes_per_pixel += ReadUint32(file_) == kHalf ? 2 : 4;
+      file_.seekg(kBytesAfterType, std::ios::cur);
       ++num_names_;
     }
     return file_ ? int64_t{file_.tellg()} - begin : -1;
@@ -133,11 +179,14 @@ class HeaderCheck {
           size,
           num_bytes_ - begin));
     }
+    file_.seekg(begin);
+    NoteClaim(name, type, size);
     file_.seekg(begin + size);
     return absl::OkStatus();
   }
 
   std::istream& file_;
+  std::vector<ExrClaims> parts_;
   int64_t num_bytes_ = 0;
   int num_names_ = 0;
 };

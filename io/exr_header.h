@@ -7,7 +7,8 @@
 // OpenEXR takes memory for an attribute as soon as it knows how long it says it is, up to 2 GB. So
 // lengths are looked at first: they must lie in the file, and be those of the type, as OpenEXR
 // reads what belongs to a type whatever the length says. It also takes half a kilobyte for every
-// name, so these are counted. Values are OpenEXR's own to check.
+// name, so these are counted; and for chunks of pixels, see io/exr_claims.h. Other values are
+// OpenEXR's own to check.
 //
 // Layout ("OpenEXR File Layout"), integers little-endian: 4 bytes magic, 4 bytes version and flags;
 // then for each part its attributes, each a name and a type, which end in 0, an int32 and as many

@@ -9,8 +9,8 @@
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStdIO.h>
+#include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfTestFile.h>
-#include <OpenEXR/ImfTileDescription.h>
 #include <OpenEXR/ImfTiledInputPart.h>
 
 #include <algorithm>
@@ -24,6 +24,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/strip.h"
 #include "base/text_file.h"
+#include "io/exr_claims.h"
 #include "io/exr_header.h"
 #include "io/exr_threads.h"
 #include "wire/utf8.h"
@@ -38,8 +39,10 @@ constexpr size_t kMaxListedNames = 40;
 
 constexpr size_t kMaxViews = 16;
 
-// Side of a tile, where the image is smaller: OpenEXR takes memory for whole tiles.
-constexpr int64_t kMaxTileSide = 1024;
+// A display window of so many pixels, 2K, needs no reason; beyond that it may have as many for each
+// byte of the file. Little of a frame may be rendered, or nothing.
+constexpr int64_t kFreeDisplayPixels = int64_t{4} << 20;
+constexpr int64_t kMostPixelsOfByte = 4096;
 
 int64_t WidthOf(const Window& window) { return int64_t{window.max.x} - window.min.x + 1; }
 int64_t HeightOf(const Window& window) { return int64_t{window.max.y} - window.min.y + 1; }
@@ -62,26 +65,19 @@ absl::Status CheckWindow(const char* name, const Window& window, int64_t max_pix
   return absl::OkStatus();
 }
 
-absl::Status CheckPart(int part, const Imf::Header& header, int64_t max_pixels) {
+absl::Status CheckPart(int part,
+                       const Imf::Header& header,
+                       int64_t max_pixels,
+                       int64_t file_bytes) {
   if (Imf::isDeepData(header.type())) {
     return absl::InvalidArgumentError(
         absl::StrFormat("part %d is deep, want a flat image: render or flatten the depth", part));
   }
-  absl::Status status = CheckWindow("display window", header.displayWindow(), max_pixels);
+  const int64_t most = std::max(kFreeDisplayPixels, kMostPixelsOfByte * file_bytes);
+  absl::Status status =
+      CheckWindow("display window", header.displayWindow(), std::min(max_pixels, most));
   if (status.ok()) status = CheckWindow("data window", header.dataWindow(), max_pixels);
-  if (!status.ok() || !Imf::isTiled(header.type())) return status;
-  const Imf::TileDescription& tile = header.tileDescription();
-  const int64_t max_width = std::max(kMaxTileSide, WidthOf(header.dataWindow()));
-  const int64_t max_height = std::max(kMaxTileSide, HeightOf(header.dataWindow()));
-  if (tile.xSize <= max_width && tile.ySize <= max_height) return absl::OkStatus();
-  return absl::InvalidArgumentError(
-      absl::StrFormat("part %d has tiles of %dx%d pixels, want at most %dx%d: the file is damaged, "
-                      "or render the read-back without tiles",
-                      part,
-                      tile.xSize,
-                      tile.ySize,
-                      max_width,
-                      max_height));
+  return status;
 }
 
 // What OpenEXR says, in UTF-8, without the path.
@@ -89,6 +85,20 @@ std::string WordsOf(const std::exception& error, const std::string& path) {
   absl::string_view words = error.what();
   absl::ConsumePrefix(&words, absl::StrCat("Cannot read image file \"", path, "\". "));
   return Utf8Text(words);
+}
+
+// Of all channels.
+int64_t PixelBytesOf(const Imf::Header& header) {
+  const Window& window = header.dataWindow();
+  int64_t bytes = 0;
+  const Imf::ChannelList& channels = header.channels();
+  for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
+    const Imf::Channel& is = channel.channel();
+    const int64_t samples = (WidthOf(window) / std::max(1, is.xSampling)) *
+                            (HeightOf(window) / std::max(1, is.ySampling));
+    bytes += samples * (is.type == Imf::HALF ? 2 : 4);
+  }
+  return bytes;
 }
 
 template <typename T>
@@ -157,6 +167,7 @@ struct ExrInput::Source {
       : bytes(path, std::ios::binary), stream(bytes, path.c_str()) {}
 
   std::ifstream bytes;
+  int64_t num_bytes = 0;
   Imf::StdIFStream stream;
   std::optional<Imf::MultiPartInputFile> file;
 };
@@ -179,6 +190,9 @@ absl::StatusOr<ExrInput> ExrInput::Open(const std::string& path, int64_t max_pix
     ExrInput exr(path);
     Source& source = *exr.source_;
     if (!source.bytes) return absl::PermissionDeniedError(absl::StrCat(path, ": cannot be opened"));
+    source.bytes.seekg(0, std::ios::end);
+    source.num_bytes = source.bytes.tellg();
+    source.bytes.seekg(0);
     if (!Imf::isOpenExrFile(source.stream)) {
       return absl::InvalidArgumentError(absl::StrCat(path, ": is not an OpenEXR file"));
     }
@@ -189,9 +203,8 @@ absl::StatusOr<ExrInput> ExrInput::Open(const std::string& path, int64_t max_pix
     source.file.emplace(source.stream);
     for (int i = 0; i < source.file->parts(); ++i) {
       const Imf::Header& header = source.file->header(i);
-      if (absl::Status status = InFile(path, CheckPart(i, header, max_pixels)); !status.ok()) {
-        return status;
-      }
+      const absl::Status status = InFile(path, CheckPart(i, header, max_pixels, source.num_bytes));
+      if (!status.ok()) return status;
       Part& part = exr.parts_.emplace_back();
       if (header.hasName()) part.name = header.name();
       part.views = ViewsOf(header);
@@ -232,6 +245,13 @@ std::string ExrInput::quoted_part(int part) const {
 
 double ExrInput::pixel_aspect(int part) const {
   return source_->file->header(part).pixelAspectRatio();
+}
+
+std::optional<std::string> ExrInput::StringAttribute(int part, const std::string& name) const {
+  const Imf::Header& header = source_->file->header(part);
+  const auto* found = header.findTypedAttribute<Imf::StringAttribute>(name);
+  if (found == nullptr) return std::nullopt;
+  return found->value();
 }
 
 std::optional<Eigen::Matrix4d> ExrInput::MatrixAttribute(int part, const std::string& name) const {
@@ -275,6 +295,17 @@ absl::StatusOr<std::vector<T>> ExrInput::Read(ChannelId id, T outside) {
     }
     const Window& data_window = header.dataWindow();
     const Window& display_window = header.displayWindow();
+    const int64_t most = MostPixelBytes(header.compression(), source_->num_bytes);
+    if (const int64_t pixel_bytes = PixelBytesOf(header); pixel_bytes > most) {
+      return absl::DataLossError(absl::StrFormat(
+          "%s: channel %s cannot be read: its part has %d bytes of pixels, of which a file of %d "
+          "bytes holds %d at most: the file is damaged or cut short",
+          path_,
+          quoted_name(id),
+          pixel_bytes,
+          source_->num_bytes,
+          most));
+    }
     std::vector<T> data = ReadData<T>(file, id.part, name(id));
     if (data_window == display_window) return data;
     return OnDisplay(data, data_window, display_window, outside);

@@ -59,6 +59,9 @@ class ExrInput {
   // Width over height of a pixel, 1 where the part does not say.
   double pixel_aspect(int part) const;
 
+  // The string attribute of that name.
+  std::optional<std::string> StringAttribute(int part, const std::string& name) const;
+
   // The matrix attribute of that name, (r, c) the number 4 r + c as stored.
   std::optional<Eigen::Matrix4d> MatrixAttribute(int part, const std::string& name) const;
 

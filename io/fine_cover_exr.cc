@@ -1,6 +1,7 @@
 #include "io/fine_cover_exr.h"
 
 #include <Eigen/Core>
+#include <cmath>
 #include <utility>
 
 #include "absl/strings/str_format.h"
@@ -67,6 +68,9 @@ absl::StatusOr<FineCoverFile> ReadFineCoverExr(const std::string& path,
   ReadbackExrOptions of_fine = options;
   of_fine.camera = ResizedCamera(readback.camera, width, height);
   of_fine.depth_kind = readback.depth_kind;
+  if (readback.background.has_value() && std::isfinite(*readback.background)) {
+    of_fine.background = readback.background;
+  }
   const absl::StatusOr<internal::CameraOfPart> own =
       internal::CameraFromExr(*exr, part, depth->view, options.camera_exr);
   if (!options.camera.has_value() && own.ok() && !SeeTheSame(*of_fine.camera, own->camera)) {
@@ -80,6 +84,13 @@ absl::StatusOr<FineCoverFile> ReadFineCoverExr(const std::string& path,
   fine.columns = width;
   fine.rows = height;
   fine.depth = std::move(file->depth);
+  // It may have a background where the read-back shows none.
+  if (file->background.has_value() && !IsNdc(file->depth_kind)) {
+    constexpr float kNothingHit = 1e10F;
+    for (float& depth : fine.depth) {
+      if (depth >= *file->background) depth = kNothingHit;
+    }
+  }
   fine.shadow_bits = std::move(file->shadow_bits);
   fine.lit_lights = file->facing_lights;
   if (!file->facing_bits.empty()) {

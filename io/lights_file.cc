@@ -1,44 +1,207 @@
 #include "io/lights_file.h"
 
+#include <google/protobuf/struct.pb.h>
+
 #include <cmath>
+#include <set>
 #include <utility>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
+#include "absl/strings/strip.h"
 #include "base/text_file.h"
+#include "scenes/gltf_view.h"
 #include "wire/light_proto.h"
 #include "wire/proto_json.h"
+#include "wire/utf8.h"
 
 namespace lightfit {
 
-absl::StatusOr<std::vector<Light>> ParseLightsJson(absl::string_view json) {
-  v1::LightList list;
-  if (absl::Status status = JsonToProto(json, list); !status.ok()) return status;
-  if (list.lights().empty()) {
+namespace {
+
+using google::protobuf::ListValue;
+using google::protobuf::Struct;
+using google::protobuf::Value;
+
+enum class KindOfLight { kUnsaid, kPoint, kSun, kOther };
+
+const Value* FindField(const Struct& object, const char* name) {
+  const auto found = object.fields().find(name);
+  return found == object.fields().end() ? nullptr : &found->second;
+}
+
+// Lower case, and without what programs put around it: "PxrDistantLight" is "distant".
+std::string BareWord(absl::string_view word) {
+  std::string bare;
+  for (const char c : word) {
+    if (absl::ascii_isalpha(c)) bare.push_back(absl::ascii_tolower(c));
+  }
+  absl::string_view view(bare);
+  if (view.size() > 3) absl::ConsumePrefix(&view, "pxr");
+  if (view.size() > 5 && !absl::ConsumeSuffix(&view, "light")) absl::ConsumePrefix(&view, "light");
+  return std::string(view);
+}
+
+KindOfLight KindOfWord(absl::string_view word) {
+  const std::string bare = BareWord(word);
+  for (const char* point : {"point", "spot", "omni", "sphere", "photometric"}) {
+    if (bare == point) return KindOfLight::kPoint;
+  }
+  for (const char* sun : {"sun", "directional", "direction", "distant", "infinite"}) {
+    if (bare == sun) return KindOfLight::kSun;
+  }
+  return KindOfLight::kOther;
+}
+
+// What a light says that it is; `said` is that in the file's words, "type = \"DOME\"".
+KindOfLight KindOf(const Struct& object, std::string* said) {
+  for (const char* field : {"type", "kind", "light_type", "lightType"}) {
+    const Value* value = FindField(object, field);
+    if (value == nullptr || value->has_null_value()) continue;
+    if (!value->has_string_value()) {
+      *said = absl::StrCat(field, " is not a word");
+      return KindOfLight::kOther;
+    }
+    if (value->string_value().empty()) continue;
+    *said = absl::StrFormat("%s = \"%s\"", field, Utf8Text(value->string_value().substr(0, 64)));
+    return KindOfWord(value->string_value());
+  }
+  return KindOfLight::kUnsaid;
+}
+
+bool HasList(const Struct& object, const char* name) {
+  const Value* value = FindField(object, name);
+  return value != nullptr && value->list_value().values_size() > 0;
+}
+
+absl::StatusOr<Light> LightOfObject(Struct object) {
+  const Value* name_value = FindField(object, "name");
+  const std::string name =
+      name_value != nullptr ? Utf8Text(name_value->string_value().substr(0, 64)) : "";
+  std::string said;
+  const KindOfLight kind = KindOf(object, &said);
+  if (kind == KindOfLight::kOther) {
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "light \"%s\": %s, want a point, a spot or a sun: light from an area or from all around "
+        "has "
+        "no single shadow map. To fit it as a point give it a position and the type \"POINT\"",
+        name,
+        said));
+  }
+  // Of a spot the direction does not matter, of a sun the place of its icon.
+  if (HasList(object, "position") && HasList(object, "direction")) {
+    object.mutable_fields()->erase(kind == KindOfLight::kSun ? "position" : "direction");
+  }
+  const char* wanted = kind == KindOfLight::kSun     ? "direction"
+                       : kind == KindOfLight::kPoint ? "position"
+                                                     : nullptr;
+  if (wanted != nullptr && !HasList(object, wanted)) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("light \"%s\": %s, but it has no %s, want [x, y, z]", name, said, wanted));
+  }
+  const absl::StatusOr<std::string> json = ProtoToJson(object);
+  if (!json.ok()) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("light \"%s\": is not JSON: %s", name, json.status().message()));
+  }
+  v1::Light proto;
+  if (absl::Status status = JsonToProto(*json, proto); !status.ok()) return status;
+  return LightFromProto(proto);
+}
+
+// Names and places are what a light is read from; the rest of an entry may be large.
+Struct OnlyWhatCounts(const Struct& object) {
+  Struct counts;
+  for (const char* field :
+       {"name", "position", "direction", "type", "kind", "light_type", "lightType"}) {
+    const Value* value = FindField(object, field);
+    if (value != nullptr) (*counts.mutable_fields())[field] = *value;
+  }
+  return counts;
+}
+
+absl::StatusOr<std::string> JsonOf(const std::string& path) {
+  return IsGltf(path) ? GltfLightsJson(path) : ReadTextFile(path);
+}
+
+ListedLight LightOfEntry(const Value& entry, int index) {
+  ListedLight listed;
+  listed.light.shadow_bit = index;
+  const auto fail = [&listed, index](const absl::Status& status) {
+    listed.status =
+        absl::Status(status.code(), absl::StrCat("lights[", index, "]: ", status.message()));
+  };
+  if (!entry.has_struct_value()) {
+    fail(absl::InvalidArgumentError(
+        "want {\"name\": ..., \"position\" or \"direction\": [x, y, z]}"));
+    return listed;
+  }
+  absl::StatusOr<Light> light = LightOfObject(OnlyWhatCounts(entry.struct_value()));
+  if (light.ok()) {
+    listed.light = *std::move(light);
+    listed.light.shadow_bit = index;
+  } else {
+    const Value* name = FindField(entry.struct_value(), "name");
+    if (name != nullptr) listed.light.name = Utf8Text(name->string_value());
+    fail(light.status());
+  }
+  return listed;
+}
+
+}  // namespace
+
+absl::StatusOr<std::vector<ListedLight>> ParseLightList(absl::string_view json) {
+  Struct file;
+  if (absl::Status status = JsonToProto(json, file); !status.ok()) {
+    // In the words of what the file should be.
+    v1::LightList list;
+    const absl::Status of_list = JsonToProto(json, list);
+    return of_list.ok() ? status : of_list;
+  }
+  const Value* entries = FindField(file, "lights");
+  if (entries == nullptr || entries->list_value().values().empty()) {
     return absl::InvalidArgumentError(
         "lights: none, want {\"lights\": [{\"name\": ..., \"position\" or \"direction\": [x, y, "
         "z]}]}");
   }
-  if (list.lights_size() > kMaxLights) return TooManyLightsError(list.lights_size());
-  std::vector<Light> lights;
-  for (const v1::Light& proto : list.lights()) {
-    absl::StatusOr<Light> light = LightFromProto(proto);
-    if (!light.ok()) {
-      return absl::Status(light.status().code(),
-                          absl::StrCat("lights[", lights.size(), "]: ", light.status().message()));
+  std::vector<ListedLight> lights;
+  std::set<std::string> names;
+  for (const Value& entry : entries->list_value().values()) {
+    lights.push_back(LightOfEntry(entry, static_cast<int>(lights.size())));
+    ListedLight& listed = lights.back();
+    if (listed.status.ok() && !names.insert(listed.light.name).second) {
+      listed.status = NameTakenError(listed.light);
     }
-    light->shadow_bit = static_cast<int>(lights.size());
-    lights.push_back(*std::move(light));
   }
-  if (absl::Status status = ValidateLights(lights); !status.ok()) return status;
+  return lights;
+}
+
+absl::StatusOr<std::vector<Light>> ParseLightsJson(absl::string_view json) {
+  absl::StatusOr<std::vector<ListedLight>> list = ParseLightList(json);
+  if (!list.ok()) return list.status();
+  if (list->size() > kMaxLights) return TooManyLightsError(static_cast<int64_t>(list->size()));
+  std::vector<Light> lights;
+  for (ListedLight& listed : *list) {
+    if (!listed.status.ok()) return listed.status;
+    lights.push_back(std::move(listed.light));
+  }
+  return lights;
+}
+
+absl::StatusOr<std::vector<ListedLight>> ReadLightList(const std::string& path) {
+  const absl::StatusOr<std::string> json = JsonOf(path);
+  if (!json.ok()) return json.status();
+  absl::StatusOr<std::vector<ListedLight>> lights = ParseLightList(*json);
+  if (!lights.ok()) return InFile(path, lights.status());
   return lights;
 }
 
 absl::StatusOr<std::vector<Light>> ReadLightsFile(const std::string& path) {
-  const absl::StatusOr<std::string> json = ReadTextFile(path);
+  const absl::StatusOr<std::string> json = JsonOf(path);
   if (!json.ok()) return json.status();
   absl::StatusOr<std::vector<Light>> lights = ParseLightsJson(*json);
   if (!lights.ok()) return InFile(path, lights.status());

@@ -6,10 +6,12 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "geometry/affine_depth.h"
+#include "geometry/sized_camera.h"
 #include "io/camera_exr_input.h"
 #include "io/exr_channels.h"
 #include "io/exr_depth.h"
 #include "io/exr_input.h"
+#include "io/header_lights.h"
 #include "io/light_channels.h"
 
 namespace lightfit {
@@ -53,6 +55,39 @@ absl::Status CheckShadowBits(absl::Span<const Light> lights) {
   return absl::OkStatus();
 }
 
+void Append(std::vector<ReadbackWarning> more, std::vector<ReadbackWarning>* warnings) {
+  for (ReadbackWarning& warning : more) warnings->push_back(std::move(warning));
+}
+
+// What the header says of the lights.
+void CheckHeaderLights(const ExrInput& exr,
+                       int part,
+                       absl::Span<const Light> lights,
+                       ReadbackFile& file) {
+  const absl::StatusOr<std::optional<std::vector<Light>>> of_header =
+      internal::LightsFromHeader(exr, part);
+  if (!of_header.ok()) {
+    file.warnings.push_back(
+        {"header",
+         absl::StrCat("the lights in its header cannot be read and are not compared: ",
+                      of_header.status().message())});
+  } else if (of_header->has_value()) {
+    Append(LightWarnings(lights, **of_header, file.camera), &file.warnings);
+  }
+}
+
+// What the pixels say of depth and shadows.
+void CheckPixels(absl::Span<const Light> lights, ReadbackFile& file) {
+  std::vector<Light> usable;
+  for (size_t l = 0; l < lights.size(); ++l) {
+    if (file.light_status[l].ok() && ValidateLight(lights[l]).ok()) usable.push_back(lights[l]);
+  }
+  Readback readback = file.View();
+  if (!ValidateReadback(readback).ok()) return;
+  Append(PixelWarnings(usable, WarningWords::kCommandLine, &readback), &file.warnings);
+  file.background = readback.background;
+}
+
 // Finds the camera and says where.
 absl::Status SetCamera(const OpenReadback& open,
                        const ReadbackExrOptions& options,
@@ -61,7 +96,9 @@ absl::Status SetCamera(const OpenReadback& open,
   const int part = open.depth.part;
   file.depth_kind = options.depth_kind;
   if (options.camera.has_value()) {
-    file.camera = *options.camera;
+    absl::StatusOr<Camera> sized = SizedCamera(*options.camera, exr.width(part), exr.height(part));
+    if (!sized.ok()) return sized.status();
+    file.camera = *std::move(sized);
     if (file.camera.width != exr.width(part) || file.camera.height != exr.height(part)) {
       return absl::InvalidArgumentError(
           absl::StrFormat("camera: size = %dx%d, but the display window of %s is %dx%d: want the "
@@ -72,11 +109,19 @@ absl::Status SetCamera(const OpenReadback& open,
                           exr.width(part),
                           exr.height(part)));
     }
+    // What the file says of it, where that can be understood.
+    const absl::StatusOr<internal::CameraOfPart> own =
+        internal::CameraFromExr(exr, part, open.view, options.camera_exr);
+    if (own.ok()) Append(CameraWarnings(file.camera, own->camera), &file.warnings);
   } else {
     absl::StatusOr<internal::CameraOfPart> found =
         internal::CameraFromExr(exr, part, open.view, options.camera_exr);
     if (!found.ok()) return found.status();
     file.camera = std::move(found->camera);
+    if (!found->is_exact &&
+        options.camera_exr.convention.frame_centre == CameraConvention::FrameCentre::kNearMiddle) {
+      Append(ShiftWarnings(file.camera), &file.warnings);
+    }
     if (exr.num_parts() > 1) file.origin.camera_part = exr.part_name(found->part);
   }
   absl::Status status = ValidateCamera(file.camera, file.depth_kind);
@@ -91,6 +136,7 @@ Readback ReadbackFile::View() const {
   readback.camera = camera;
   readback.depth = depth;
   readback.depth_kind = depth_kind;
+  readback.background = background;
   readback.shadow_bits = shadow_bits;
   readback.facing_bits = facing_bits;
   readback.facing_lights = facing_lights;
@@ -117,6 +163,7 @@ absl::StatusOr<ReadbackFile> ReadReadbackExr(const std::string& path,
   file.origin.depth_channel = exr->name(open.depth);
   if (exr->num_parts() > 1) file.origin.depth_part = exr->part_name(open.depth.part);
   file.origin.view = open.view;
+  file.background = options.background;
   if (absl::Status status = SetCamera(open, options, file); !status.ok()) return status;
 
   absl::StatusOr<std::vector<float>> depth =
@@ -127,6 +174,8 @@ absl::StatusOr<ReadbackFile> ReadReadbackExr(const std::string& path,
       !status.ok()) {
     return status;
   }
+  CheckHeaderLights(*exr, open.depth.part, lights, file);
+  CheckPixels(lights, file);
   return file;
 }
 

@@ -29,12 +29,16 @@
 #include "geometry/light.h"
 #include "io/camera_exr.h"
 #include "io/readback_origin.h"
+#include "io/readback_warnings.h"
 #include "optimizer/readback/readback.h"
 
 namespace lightfit {
 
 struct ReadbackExrOptions {
   DepthKind depth_kind = DepthKind::kCameraZ;
+
+  // Where the background begins: as Readback::background.
+  std::optional<float> background;
 
   // Empty: the best by io/exr_depth.h: "Z", "depth", "ViewLayer.Depth.Z", "depth.V" and so on.
   std::string depth_channel;
@@ -68,6 +72,7 @@ struct ReadbackFile {
   ReadbackOrigin origin;
   Camera camera;
   DepthKind depth_kind = DepthKind::kCameraZ;
+  std::optional<float> background;    // as stated, or looked for
   std::vector<float> depth;           // row-major, top row first, the display window
   std::vector<uint32_t> shadow_bits;  // likewise; light l in bit lights[l].shadow_bit
 
@@ -78,6 +83,9 @@ struct ReadbackFile {
   // Element l belongs to lights[l]: ok, or why its channels could not be read (NotFound lists those
   // there are, when it is the shadow that is missing). The other lights are good to use.
   std::vector<absl::Status> light_status;
+
+  // What may be a mistake (io/readback_warnings.h).
+  std::vector<ReadbackWarning> warnings;
 
   // Refers to this object's buffers.
   Readback View() const;

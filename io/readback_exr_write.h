@@ -7,7 +7,8 @@
 //
 // The camera goes into worldToCamera and worldToNDC, as the OpenEXR standard has them. These are
 // single precision, which moves a camera 400 metres from the origin by 0.03 mm, so it stands there
-// a second time in double precision, for our own reader: it gets the camera as it was.
+// a second time in double precision, for our own reader: it gets the camera as it was. The lights
+// stand in the header, too (io/header_lights.h).
 #pragma once
 
 #include <string>

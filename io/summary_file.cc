@@ -18,7 +18,8 @@ namespace {
 
 constexpr absl::string_view kMagic("\x89LFS\r\n\x1a\n", 8);
 constexpr size_t kHeaderBytes = 20;
-constexpr int64_t kMaxFileBytes = int64_t{16} << 20;  // 32 lights of the largest hulls
+constexpr int64_t kMaxFileBytes = int64_t{64}
+                                  << 20;  // 32 lights of the largest hulls, and 10^6 frames
 
 void AppendUint32(uint32_t value, std::string* bytes) {
   for (int shift = 0; shift < 32; shift += 8) bytes->push_back(static_cast<char>(value >> shift));
@@ -107,7 +108,7 @@ absl::Status WriteSummaryFile(const std::string& path,
 }
 
 absl::StatusOr<SummarySet> ReadSummaryFile(const std::string& path) {
-  const absl::StatusOr<std::string> bytes = ReadTextFile(path, kMaxFileBytes);
+  const absl::StatusOr<std::string> bytes = ReadFileBytes(path, kMaxFileBytes);
   if (!bytes.ok()) return bytes.status();
   absl::StatusOr<SummarySet> set = ParseSummarySet(*bytes);
   if (!set.ok()) return InFile(path, set.status());

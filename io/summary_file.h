@@ -1,6 +1,7 @@
 // io/summary_file.h
 //
-// Summary files: what a farm's jobs hand on. About a kilobyte for each light.
+// Summary files: what a farm's jobs hand on. About a kilobyte for each light, and 20 bytes for
+// each frame, which say which it is.
 // In:   SummarySet.
 // Out:  a file, the same bytes for the same frames in whatever order and grouping they were added.
 //

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "absl/strings/str_format.h"
+#include "geometry/homography.h"
 #include "geometry/light.h"
 #include "methods/focused.h"
 #include "methods/light_body.h"
@@ -88,9 +89,7 @@ absl::StatusOr<MethodMap> PerspectiveMap(const MethodInput& input,
   const double least_share =
       std::min(0.02, 0.5 * (depths.least + pull_back) / (depths.greatest + pull_back));
   const bool turned = TurnAxis(*body, least_share, &warped_from_ray);
-  const double scale =
-      warped_from_ray.row(0).norm() * warped_from_ray.row(1).norm() * warped_from_ray.row(2).norm();
-  if (!(std::abs(warped_from_ray.determinant()) > 1e-12 * scale)) {
+  if (IsSingular(warped_from_ray, 1e-12)) {
     return FocusedInstead(input, "the middle of the view's unit cube is behind the light");
   }
   absl::StatusOr<MethodMap> map = FitBody(*body, warped_from_ray, RectangleTurn::kMinArea);

@@ -31,7 +31,7 @@ namespace lightfit {
 
 // Raised whenever a fit of the same input may come out otherwise, so that who keeps results knows
 // which to compute anew.
-inline constexpr int kFitRevision = 2;
+inline constexpr int kFitRevision = 3;
 
 // The matrix for one light.
 absl::StatusOr<LightMatrix> FitLight(const Readback& readback,

@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "base/number.h"
+#include "base/table.h"
 #include "jobs/compare/totals.h"
 #include "jobs/schemes/asked_maps.h"
 #include "picture/bar_chart.h"
@@ -26,12 +27,16 @@ constexpr int kHeaderHeight = 54;
 constexpr int kCropGap = 6;
 constexpr int kRowGap = 26;
 constexpr int kLegendHeight = 64;
+constexpr int kNoteHeight = 22;
 constexpr int kMaxPanel = 400;  // along the longer side
 constexpr int kFrameWidth = 2;
 
 constexpr int kTitleSize = 26;
 constexpr int kNameSize = 19;
 constexpr int kCaptionSize = 15;
+
+constexpr int kMostTitleCharacters = 40;
+constexpr int kMostNameCharacters = 24;
 
 constexpr int kMaxColumns = 4;
 constexpr int kCropPixels = 62;  // about the crop's width in image pixels
@@ -43,12 +48,13 @@ struct Layout {
   int crop_factor = 1;
   CropBox crop;  // of the image
   int columns = 1, rows = 1;
+  int notes_height = 0;  // of what is said of methods without maps
 
   int cell_height() const {
     return kHeaderHeight + panel_height + kCropGap + crop.height * crop_factor + kRowGap;
   }
   int width() const { return 2 * kMargin + columns * panel_width + (columns - 1) * kGap; }
-  int height() const { return kTitleHeight + rows * cell_height() + kLegendHeight; }
+  int height() const { return kTitleHeight + rows * cell_height() + notes_height + kLegendHeight; }
 };
 
 int ColumnsFor(int num_panels) {
@@ -84,6 +90,7 @@ class Page {
         options_(options),
         layout_(layout),
         typeface_(typeface),
+        exposure_(ExposureFor(stage.screen, light.light, light.truth)),
         canvas_(layout.width(), layout.height(), kPageColor) {}
 
   Canvas TakeCanvas() { return std::move(canvas_); }
@@ -91,7 +98,9 @@ class Page {
   void DrawTitle() {
     Text(kMargin,
          kMargin + 18,
-         absl::StrCat(options_.title, ", ", light_.light.name),
+         absl::StrCat(Shortened(options_.title, kMostTitleCharacters),
+                      ", ",
+                      Shortened(light_.light.name, kMostTitleCharacters)),
          {.size_px = kTitleSize, .color = kTextColor, .bold = true});
     const Camera& camera = stage_.screen.camera;
     Text(
@@ -124,20 +133,6 @@ class Page {
 
   void DrawRow(const ComparedRow& row) {
     const bool is_ours = &row == &light_.lightfit();
-    if (!HasImage(row)) {
-      Header(row.name, options_.has_plans ? "no maps" : "no matrix", kWarningColor);
-      canvas_.FillRectangle(X(), PanelY(), layout_.panel_width, layout_.panel_height, kPanelColor);
-      int y = PanelY() + 30;
-      for (const std::string& line : typeface_.Wrapped(std::string(row.status.message()),
-                                                       layout_.panel_width - 24,
-                                                       {.size_px = kCaptionSize})) {
-        if (y > PanelY() + layout_.panel_height) break;
-        Text(X() + 12, y, line, {.size_px = kCaptionSize, .color = kFaintTextColor});
-        y += 22;
-      }
-      ++cell_;
-      return;
-    }
     const int64_t count = CountOf(row, options_.bias);
     std::string caption = absl::StrCat(count, count == 1 ? " wrong pixel" : " wrong pixels");
     const int num_maps = NumMaps(row.drawn);
@@ -149,7 +144,7 @@ class Page {
                   static_cast<double>(CountOf(light_.lightfit(), options_.bias)));
       if (ratio.has_value()) absl::StrAppend(&caption, ", ", FigureText(*ratio), " x lightfit");
     }
-    std::string title = row.name;
+    std::string title = Shortened(row.name, kMostNameCharacters);
     if (row.drawn.has_other_texels) {
       absl::StrAppend(&title, " (", NumTexels(row.drawn), " texels)");
     }
@@ -167,12 +162,22 @@ class Page {
     for (const ComparedRow* map : maps) {
       if (!HasImage(*map)) continue;
       const Rgb color = map == &light_.lightfit() ? kGainColor : kReceiverColor;
-      bars.push_back({map->name, CountOf(*map, options_.bias), color});
+      bars.push_back(
+          {Shortened(map->name, kMostNameCharacters), CountOf(*map, options_.bias), color});
     }
     if (bars.empty()) return;
     Header("all methods", "wrong pixels; fewer is better", kTextColor);
     DrawBarChart(
         X(), PanelY(), layout_.panel_width, layout_.panel_height, bars, typeface_, &canvas_);
+  }
+
+  // Below the panels: why methods have none.
+  void DrawNotes(const std::vector<std::string>& lines) {
+    int y = layout_.height() - kLegendHeight - layout_.notes_height + 6;
+    for (const std::string& line : lines) {
+      Text(kMargin, y, line, {.size_px = kCaptionSize, .color = kWarningColor});
+      y += kNoteHeight;
+    }
   }
 
   void DrawLegend() {
@@ -217,7 +222,8 @@ class Page {
 
   // Tinted by `asked`, where there are several maps.
   void DrawShadows(const std::vector<Lighting>& shadows, const std::vector<int>& asked) {
-    const Image full = ShadeShadows(stage_.screen, light_.light, light_.truth, shadows, asked);
+    const Image full =
+        ShadeShadows(stage_.screen, light_.light, light_.truth, shadows, asked, exposure_);
     const Image panel = layout_.magnified > 1
                             ? Magnified(full, layout_.magnified)
                             : ReducedPanel(full, WrongMask(light_.truth, shadows), layout_.reduced);
@@ -246,9 +252,37 @@ class Page {
   const ComparePictureOptions& options_;
   const Layout& layout_;
   const Typeface& typeface_;
+  const Exposure exposure_;  // one for all panels
   Canvas canvas_;
   int cell_ = 0;
 };
+
+// "tsm, psm: no way": why methods without maps have none, the same words once for all of them.
+std::vector<std::string> NotesOf(const std::vector<const ComparedRow*>& maps,
+                                 int width,
+                                 const Typeface& typeface) {
+  std::vector<std::pair<std::string, std::string>> notes;  // names, words
+  for (const ComparedRow* map : maps) {
+    if (HasImage(*map)) continue;
+    const std::string words(map->status.message());
+    const auto known = std::find_if(
+        notes.begin(), notes.end(), [&words](const auto& note) { return note.second == words; });
+    if (known == notes.end()) {
+      notes.emplace_back(map->name, words);
+    } else {
+      absl::StrAppend(&known->first, ", ", map->name);
+    }
+  }
+  std::vector<std::string> lines;
+  for (const auto& [names, words] : notes) {
+    for (std::string& line : typeface.Wrapped(absl::StrCat("No picture of ", names, ": ", words),
+                                              width,
+                                              {.size_px = kCaptionSize})) {
+      lines.push_back(std::move(line));
+    }
+  }
+  return lines;
+}
 
 }  // namespace
 
@@ -257,14 +291,21 @@ Canvas DrawComparePicture(const CompareStage& stage,
                           const ComparePictureOptions& options,
                           const Typeface& typeface) {
   const Camera& camera = stage.screen.camera;
-  Layout layout = LayoutFor(camera.width, camera.height, static_cast<int>(light.rows.size()) + 1);
+  const std::vector<const ComparedRow*> maps = InOrder(light, options.bias);
+  const auto num_drawn = std::count_if(
+      maps.begin(), maps.end(), [](const ComparedRow* map) { return HasImage(*map); });
+  Layout layout = LayoutFor(camera.width, camera.height, static_cast<int>(num_drawn) + 1);
+  const std::vector<std::string> notes = NotesOf(maps, layout.width() - 2 * kMargin, typeface);
+  if (!notes.empty()) layout.notes_height = kNoteHeight * (static_cast<int>(notes.size()) + 1);
   layout.crop = ChooseCrop(light, options.bias, camera.width, camera.height, layout.crop);
   Page page(stage, light, options, layout, typeface);
   page.DrawTitle();
   page.DrawTruth();
-  const std::vector<const ComparedRow*> maps = InOrder(light, options.bias);
-  for (const ComparedRow* map : maps) page.DrawRow(*map);
+  for (const ComparedRow* map : maps) {
+    if (HasImage(*map)) page.DrawRow(*map);
+  }
   page.DrawBars(maps);
+  page.DrawNotes(notes);
   page.DrawLegend();
   return page.TakeCanvas();
 }

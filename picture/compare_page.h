@@ -3,7 +3,9 @@
 // The shadow images of all methods for one light, side by side, wrong pixels marked; under each the
 // same crop enlarged.
 // In:   a CompareStage with truth, and a LightComparison with its images.
-// Out:  a Canvas. First the truth, then lightfit, then the others from the fewest wrong pixels up.
+// Out:  a Canvas. First the truth, then lightfit, then the others from the fewest wrong pixels up;
+// of
+//       methods without maps a line says why.
 #pragma once
 
 #include <string>

@@ -46,7 +46,7 @@ absl::StatusOr<Canvas> DrawPicture(const Surfaces& surfaces,
     if (panels.back().status.ok()) messages.back().clear();
   }
 
-  FitRows page(layout, FitRows::Height(layout, messages), typeface);
+  FitRows page(layout, ScaleOf(panels), FitRows::Height(layout, messages), typeface);
   page.DrawTitle(
       options.title,
       absl::StrFormat(

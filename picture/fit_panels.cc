@@ -15,7 +15,7 @@ std::vector<ReceiverRole> RolesOfReceivers(const Surfaces& surfaces,
                                            Border border,
                                            const std::vector<uint8_t>& samples) {
   const Readback& readback = surfaces.readback;
-  const AffineDepth depth(readback.camera, readback.depth_kind);
+  const AffineDepth depth = AffineDepthOf(readback);
   const NeededSurfaces needed(surfaces, light, border);
   std::vector<ReceiverRole> roles;
   for (size_t pixel = 0; pixel < samples.size(); ++pixel) {
@@ -43,16 +43,17 @@ absl::StatusOr<PlanPanels> PanelsOfPlan(const Readback& readback,
 
 }  // namespace
 
-LogScale LightPanels::Scale() const {
+LogScale ScaleOf(absl::Span<const LightPanels> lights) {
   std::vector<float> all;
-  for (const auto* panels : {&before, &after}) {
-    if (!panels->has_value()) continue;
-    all.insert(all.end(), (*panels)->footprints.begin(), (*panels)->footprints.end());
+  for (const LightPanels& light : lights) {
+    for (const auto* panels : {&light.before, &light.after}) {
+      if (!panels->has_value()) continue;
+      all.insert(all.end(), (*panels)->footprints.begin(), (*panels)->footprints.end());
+    }
+    if (!light.plan.has_value()) continue;
+    all.insert(all.end(), light.plan->footprints.begin(), light.plan->footprints.end());
   }
-  if (plan.has_value()) {
-    all.insert(all.end(), plan->footprints.begin(), plan->footprints.end());
-  }
-  return ScaleFor(all);
+  return FootprintScaleFor(all);
 }
 
 absl::StatusOr<LightPanels> MakeLightPanels(const Surfaces& surfaces,

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "absl/types/span.h"
 #include "jobs/fit_comparison.h"
 #include "optimizer/readback/surfaces.h"
 #include "picture/color_map.h"
@@ -39,10 +40,10 @@ struct LightPanels {
   std::optional<MatrixPanels> before;
   std::optional<MatrixPanels> after;  // one of the two
   std::optional<PlanPanels> plan;
-
-  // One for before and after; every light has its own, as lights may differ a thousandfold.
-  LogScale Scale() const;
 };
+
+// One for before and after and for all lights, so that a colour means the same in all of them.
+LogScale ScaleOf(absl::Span<const LightPanels> lights);
 
 // `receivers` are ReceiverPositions(); `samples` as used by the fit.
 absl::StatusOr<LightPanels> MakeLightPanels(const Surfaces& surfaces,

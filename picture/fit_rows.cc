@@ -6,6 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "base/number.h"
+#include "base/table.h"
 #include "picture/color_map.h"
 #include "picture/theme.h"
 
@@ -30,6 +31,8 @@ constexpr int kTitleSize = 26;
 constexpr int kLightNameSize = 21;
 constexpr int kPanelTitleSize = 16;
 constexpr int kCaptionSize = 14;
+
+constexpr int kMostNameCharacters = 40;
 
 constexpr int kMostMapsInLegend = 8;  // of a plan; the others have their numbers in the picture
 
@@ -98,8 +101,14 @@ int FitRows::Height(const FitLayout& layout,
   return height;
 }
 
-FitRows::FitRows(const FitLayout& layout, int height, const Typeface& typeface)
-    : layout_(layout), typeface_(typeface), canvas_(layout.width, height, kPageColor) {}
+FitRows::FitRows(const FitLayout& layout,
+                 const LogScale& scale,
+                 int height,
+                 const Typeface& typeface)
+    : layout_(layout),
+      scale_(scale),
+      typeface_(typeface),
+      canvas_(layout.width, height, kPageColor) {}
 
 void FitRows::DrawTitle(const std::string& title, const std::string& sizes) {
   Text(kMargin, kMargin + 20, title, {.size_px = kTitleSize, .color = kTextColor, .bold = true});
@@ -128,14 +137,13 @@ void FitRows::DrawMatrixRow(const Readback& readback,
   RowHeader(light,
             Verdict(light, light.focused, "focused", "no focused map has room for all receivers"),
             IsBehind(light, light.focused));
-  const LogScale scale = panels.Scale();
   const auto draw = [&](int column,
                         const std::string& heat_title,
                         const std::string& map_title,
                         const JudgedMatrix& judged,
                         const MatrixPanels& of_matrix) {
     PanelHeader(layout_.HeatX(column), heat_title, FiguresText(judged.figures));
-    HeatPanel(column, readback, light, panels, of_matrix.footprints, scale);
+    HeatPanel(column, readback, light, panels, of_matrix.footprints);
     PanelHeader(
         layout_.MapX(column),
         map_title,
@@ -154,7 +162,7 @@ void FitRows::DrawMatrixRow(const Readback& readback,
     PanelHeader(layout_.HeatX(0), "Before: none", "the focused map would have to look all around");
   }
   draw(1, absl::StrCat("After: ", after), "Map after", *light.final, *panels.after);
-  ScaleBar(scale);
+  ScaleBar();
   EndRow();
 }
 
@@ -164,7 +172,6 @@ void FitRows::DrawPlanRow(const Readback& readback,
   RowHeader(light,
             Verdict(light, light.final, "one map", "no single map has room for all receivers"),
             IsBehind(light, light.final));
-  const LogScale scale = panels.Scale();
   const JudgedPlan& judged = **light.plan;
   const Plan plan = PlanOf(judged.plan);
   if (panels.before.has_value()) {
@@ -172,7 +179,7 @@ void FitRows::DrawPlanRow(const Readback& readback,
     PanelHeader(layout_.HeatX(0),
                 absl::StrFormat("Before: one map, %d x %d", one.width, one.height),
                 FiguresText(light.final->figures));
-    HeatPanel(0, readback, light, panels, panels.before->footprints, scale);
+    HeatPanel(0, readback, light, panels, panels.before->footprints);
   } else {
     PanelHeader(layout_.HeatX(0), "Before: none", "a single map would have to look all around");
   }
@@ -180,8 +187,8 @@ void FitRows::DrawPlanRow(const Readback& readback,
       layout_.HeatX(1),
       absl::StrCat("After: a plan of ", plan.maps.size(), plan.maps.size() == 1 ? " map" : " maps"),
       FiguresText(judged.figures));
-  HeatPanel(1, readback, light, panels, panels.plan->footprints, scale);
-  ScaleBar(scale);
+  HeatPanel(1, readback, light, panels, panels.plan->footprints);
+  ScaleBar();
   PanelHeader(layout_.CellsX(),
               "Which map a pixel asks",
               absl::StrFormat("%.3g %% of the surfaces outside of all maps: %s",
@@ -205,9 +212,10 @@ void FitRows::DrawPlanRow(const Readback& readback,
 }
 
 void FitRows::DrawLegend() {
-  Legend({{HeatColor(0.15), "fine texels"},
-          {HeatColor(0.95), "coarse texels"},
-          {Mix(HeatColor(0.5), {}, 0.45f), "darker: in shadow"},
+  Legend({{FootprintColor(0.15), "texels finer than a pixel"},
+          {FootprintColor(0.5), "as fine"},
+          {FootprintColor(0.85), "coarser"},
+          {Mix(FootprintColor(0.5), {}, 0.4f), "darker: in shadow"},
           {kBoundaryColor, "shadow edge that counts"},
           {kUnratedColor, "not rated: turned away or edge-on"},
           {kReceiverColor, "visible surface in the map"},
@@ -215,12 +223,13 @@ void FitRows::DrawLegend() {
           {kHullColor, "hull of what needs room"}},
          "Footprint: how many read-back pixels one shadow-map texel covers across, on the screen. "
          "Below 1 the map is finer than the read-back, above 1 coarser. Wrong: shadow pixels that "
-         "will be wrong, foretold from the read-back. Each light has its own colour scale.");
+         "will be wrong, foretold from the read-back. One colour scale for all lights.");
 }
 
 void FitRows::DrawPlanLegend(int max_maps) {
-  std::vector<LegendEntry> entries = {{HeatColor(0.15), "fine texels"},
-                                      {HeatColor(0.95), "coarse texels"},
+  std::vector<LegendEntry> entries = {{FootprintColor(0.15), "texels finer than a pixel"},
+                                      {FootprintColor(0.5), "as fine"},
+                                      {FootprintColor(0.85), "coarser"},
                                       {kBoundaryColor, "shadow edge that counts"},
                                       {kUnratedColor, "not rated, or in no map"},
                                       {kUnratedColor, "outside of all maps", true}};
@@ -230,8 +239,8 @@ void FitRows::DrawPlanLegend(int max_maps) {
   Legend(entries,
          "A pixel asks the map with the finest texels of those that hold it; darker: in shadow. "
          "Footprint: how many read-back pixels one texel covers across, on the screen. Wrong: "
-         "shadow pixels that will be wrong, foretold from the read-back. Each light has its own "
-         "colour scale.");
+         "shadow pixels that will be wrong, foretold from the read-back. One colour scale for all "
+         "lights.");
 }
 
 void FitRows::Legend(const std::vector<LegendEntry>& entries, const std::string& text) {
@@ -257,9 +266,12 @@ void FitRows::Text(int x, int baseline, absl::string_view text, const TextStyle&
 void FitRows::HeaderLine(const std::string& name, const std::string& words, Rgb color) {
   canvas_.FillRectangle(kMargin, y_, layout_.width - 2 * kMargin, 1, kRuleColor);
   const TextStyle style = {.size_px = kLightNameSize, .color = kTextColor, .bold = true};
-  Text(kMargin, y_ + 30, name, style);
-  Text(
-      kMargin + typeface_.Width(name, style) + 22, y_ + 30, words, {.size_px = 18, .color = color});
+  const std::string shown = Shortened(name, kMostNameCharacters);
+  Text(kMargin, y_ + 30, shown, style);
+  Text(kMargin + typeface_.Width(shown, style) + 22,
+       y_ + 30,
+       words,
+       {.size_px = 18, .color = color});
   y_ += kRowHeaderHeight;
 }
 
@@ -281,16 +293,15 @@ void FitRows::HeatPanel(int column,
                         const Readback& readback,
                         const FitComparison& light,
                         const LightPanels& panels,
-                        const std::vector<float>& footprints,
-                        const LogScale& scale) {
+                        const std::vector<float>& footprints) {
   canvas_.DrawImage(layout_.HeatX(column),
                     panels_y(),
-                    DrawHeatPanel(readback, light.light, footprints, panels.samples, scale));
+                    DrawHeatPanel(readback, light.light, footprints, panels.samples, scale_));
 }
 
-void FitRows::ScaleBar(const LogScale& scale) {
+void FitRows::ScaleBar() {
   Text(layout_.BarX(), panels_y() - 10, "px / texel", {.size_px = 13, .color = kFaintTextColor});
-  DrawColorBar(layout_.BarX(), panels_y(), layout_.heat.height, scale, typeface_, &canvas_);
+  DrawColorBar(layout_.BarX(), panels_y(), layout_.heat.height, scale_, typeface_, &canvas_);
 }
 
 int FitRows::panels_y() const { return y_ + kPanelHeaderHeight; }

@@ -12,6 +12,7 @@
 #include "jobs/fit_comparison.h"
 #include "optimizer/readback/readback.h"
 #include "picture/canvas.h"
+#include "picture/color_map.h"
 #include "picture/fit_panels.h"
 #include "picture/heat_panel.h"
 #include "picture/text.h"
@@ -42,7 +43,8 @@ class FitRows {
   // Of a page that holds these rows; `messages` are lines of text instead of panels.
   static int Height(const FitLayout& layout, const std::vector<std::vector<std::string>>& messages);
 
-  FitRows(const FitLayout& layout, int height, const Typeface& typeface);
+  // `scale` is that of all footprints.
+  FitRows(const FitLayout& layout, const LogScale& scale, int height, const Typeface& typeface);
 
   void DrawTitle(const std::string& title, const std::string& sizes);
   // `words` say what there is none of.
@@ -76,14 +78,14 @@ class FitRows {
                  const Readback& readback,
                  const FitComparison& light,
                  const LightPanels& panels,
-                 const std::vector<float>& footprints,
-                 const LogScale& scale);
-  void ScaleBar(const LogScale& scale);
+                 const std::vector<float>& footprints);
+  void ScaleBar();
   void Legend(const std::vector<LegendEntry>& entries, const std::string& text);
   int panels_y() const;  // of the row in work
   void EndRow();
 
   const FitLayout& layout_;
+  const LogScale scale_;
   const Typeface& typeface_;
   Canvas canvas_;
   int y_ = 0;

@@ -13,7 +13,8 @@ namespace {
 
 constexpr int kMaxPanelWidth = 640;   // pixels
 constexpr int kMaxPanelHeight = 560;  // pixels
-constexpr float kShadowShare = 0.4f;  // of black, over pixels in shadow
+constexpr float kShadowShare = 0.4f;  // of black, over pixels in shadow,
+constexpr float kDimShare = 0.12f;    // ... where most are: a dark scene is to be seen as well
 constexpr float kBoundaryOpacity = 0.9f;
 constexpr int kBarWidth = 18;  // pixels
 
@@ -34,6 +35,22 @@ Zoom ZoomFor(int width, int height) {
 
 bool IsShadowed(const Readback& readback, const Light& light, size_t pixel) {
   return (readback.shadow_bits[pixel] >> light.shadow_bit) & 1u;
+}
+
+// How much darker pixels in shadow are: less, the more of the scene they are.
+float ShadowShareOf(const Readback& readback, const Light& light, const AffineDepth& depth) {
+  int64_t num_surfaces = 0, num_shadowed = 0;
+  for (size_t pixel = 0; pixel < readback.depth.size(); ++pixel) {
+    if (!depth.IsSurface(readback.depth[pixel])) continue;
+    ++num_surfaces;
+    num_shadowed += IsShadowed(readback, light, pixel) ? 1 : 0;
+  }
+  if (num_surfaces == 0) return kShadowShare;
+  // Of the others some are turned away, in most scenes as many.
+  constexpr double kSome = 0.3, kMost = 0.6;
+  const double share = static_cast<double>(num_shadowed) / static_cast<double>(num_surfaces);
+  const double dark = std::clamp((share - kSome) / (kMost - kSome), 0.0, 1.0);
+  return kShadowShare + (kDimShare - kShadowShare) * static_cast<float>(dark);
 }
 
 // Calls mark(pixel, neighbour, is_right) for every lit and shadowed pair of neighbours of which one
@@ -74,12 +91,12 @@ Image DrawHeatPanel(const Readback& readback,
                     absl::Span<const uint8_t> samples,
                     const LogScale& scale) {
   const int width = readback.width();
-  const AffineDepth depth(readback.camera, readback.depth_kind);
+  const AffineDepth depth = AffineDepthOf(readback);
   Image image(width, readback.height(), kPanelColor);
   for (size_t pixel = 0; pixel < footprints.size(); ++pixel) {
     if (!depth.IsSurface(readback.depth[pixel])) continue;
     image.pixels()[pixel] =
-        footprints[pixel] > 0 ? HeatColor(scale.Position(footprints[pixel])) : kUnratedColor;
+        footprints[pixel] > 0 ? scale.ColorOf(footprints[pixel]) : kUnratedColor;
   }
   return DrawScreenPanel(readback, light, std::move(image), samples);
 }
@@ -89,10 +106,11 @@ Image DrawScreenPanel(const Readback& readback,
                       Image image,
                       absl::Span<const uint8_t> samples) {
   const int width = readback.width();
-  const AffineDepth depth(readback.camera, readback.depth_kind);
+  const AffineDepth depth = AffineDepthOf(readback);
+  const float shadow_share = ShadowShareOf(readback, light, depth);
   for (size_t pixel = 0; pixel < samples.size(); ++pixel) {
     if (!depth.IsSurface(readback.depth[pixel]) || !IsShadowed(readback, light, pixel)) continue;
-    image.pixels()[pixel] = Mix(image.pixels()[pixel], {}, kShadowShare);
+    image.pixels()[pixel] = Mix(image.pixels()[pixel], {}, shadow_share);
   }
   const Zoom zoom = ZoomFor(width, readback.height());
   if (zoom.magnified == 1) {
@@ -126,7 +144,7 @@ void DrawColorBar(
     int x, int y, int height, const LogScale& scale, const Typeface& typeface, Canvas* canvas) {
   for (int row = 0; row < height; ++row) {
     const double position = 1 - (row + 0.5) / height;
-    canvas->FillRectangle(x, y + row, kBarWidth, 1, HeatColor(position));
+    canvas->FillRectangle(x, y + row, kBarWidth, 1, scale.color_at(position));
   }
   for (const double tick : scale.Ticks()) {
     const bool is_one = std::abs(tick - 1) < 1e-9;

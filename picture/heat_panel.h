@@ -24,7 +24,8 @@ struct PanelSize {
 PanelSize HeatPanelSize(const Readback& readback);
 
 // `footprints` as FootprintImage() and `samples` as SampleImage() give them. Pixels in the light's
-// shadow are darker; a white line runs along the shadow edges that were used.
+// shadow are darker, less so where most are; a white line runs along the shadow edges that were
+// used.
 Image DrawHeatPanel(const Readback& readback,
                     const Light& light,
                     absl::Span<const float> footprints,

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "absl/types/span.h"
 #include "picture/color.h"
 
 namespace lightfit {
@@ -41,5 +42,22 @@ Image Magnified(const Image& image, int factor);
 
 // Every square of `factor` pixels becomes their mean; squares at the edges may be incomplete.
 Image Reduced(const Image& image, int factor);
+
+// How much shaded surfaces are brightened, so that a dark scene can be seen: never darker, black
+// and white stay.
+class Exposure {
+ public:
+  // Leaves everything as it is.
+  Exposure() = default;
+
+  // For surfaces of these colours: their median luminance becomes that of a middle grey, if it is
+  // below and that takes no more than a reasonable curve.
+  static Exposure For(absl::Span<const Rgb> surfaces);
+
+  Rgb operator()(Rgb color) const;
+
+ private:
+  float power_ = 1.0F;  // of each channel
+};
 
 }  // namespace lightfit

@@ -104,7 +104,7 @@ absl::StatusOr<PlanView> ViewPlan(const Readback& readback,
                                   absl::Span<const uint8_t> samples) {
   const absl::StatusOr<PlanLookUp> look_up = PlanLookUp::Create(plan, light, guard_texels);
   if (!look_up.ok()) return look_up.status();
-  const AffineDepth affine_depth(readback.camera, readback.depth_kind);
+  const AffineDepth affine_depth = AffineDepthOf(readback);
   const Eigen::Matrix4d world_from_screen = readback.camera.WorldFromScreen();
   PlanView view;
   view.maps.assign(readback.depth.size(), PlanView::kNoSurface);

@@ -1,6 +1,7 @@
 #include "picture/render_page.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "picture/theme.h"
 
@@ -22,6 +23,7 @@ Image DrawLighting(const SurfaceImage& image,
       camera.camera_from_world.topLeftCorner<3, 3>().transpose();
   const Eigen::Vector3d eye = -world_from_camera * camera.camera_from_world.topRightCorner<3, 1>();
   Image picture(camera.width, camera.height, kPageColor);
+  std::vector<Rgb> surfaces;
   for (size_t i = 0; i < image.pixels.size(); ++i) {
     const SurfacePoint& pixel = image.pixels[i];
     if (!pixel.is_surface()) continue;
@@ -35,6 +37,11 @@ Image DrawLighting(const SurfaceImage& image,
     const auto share = static_cast<float>(std::clamp(cosine, 0.0, 1.0));
     picture.pixels()[i] =
         is_lit ? Mix(kGrazedColor, kLitColor, share) : Mix(kDeepShadeColor, kShadeColor, share);
+    surfaces.push_back(picture.pixels()[i]);
+  }
+  const Exposure exposure = Exposure::For(surfaces);
+  for (size_t i = 0; i < image.pixels.size(); ++i) {
+    if (image.pixels[i].is_surface()) picture.pixels()[i] = exposure(picture.pixels()[i]);
   }
   return picture;
 }

@@ -37,7 +37,8 @@ Image ShadeShadows(const SurfaceImage& image,
                    const Light& light,
                    absl::Span<const Lighting> truth,
                    absl::Span<const Lighting> shadows,
-                   absl::Span<const int> asked) {
+                   absl::Span<const int> asked,
+                   const Exposure& exposure) {
   Image shaded(image.camera.width, image.camera.height, kPanelColor);
   const Eigen::Matrix4d world_from_camera = image.camera.camera_from_world.inverse();
   const Eigen::Vector3d eye = world_from_camera.block<3, 1>(0, 3);
@@ -46,14 +47,25 @@ Image ShadeShadows(const SurfaceImage& image,
     if (!pixel.is_surface()) continue;
     if (IsJudged(truth[i]) && shadows[i] != truth[i]) {
       const Rgb mark = shadows[i] == Lighting::kShadowed ? kFalseShadowColor : kLightLeakColor;
-      shaded.pixels()[i] = Mix(Grey(pixel, eye, light, true), mark, kMarkOpacity);
+      shaded.pixels()[i] = Mix(exposure(Grey(pixel, eye, light, true)), mark, kMarkOpacity);
     } else {
-      const Rgb grey = Grey(pixel, eye, light, shadows[i] == Lighting::kLit);
+      const Rgb grey = exposure(Grey(pixel, eye, light, shadows[i] == Lighting::kLit));
       const bool is_tinted = !asked.empty() && asked[i] >= 0;
       shaded.pixels()[i] = is_tinted ? Mix(grey, MapColor(asked[i]), kTintOpacity) : grey;
     }
   }
   return shaded;
+}
+
+Exposure ExposureFor(const SurfaceImage& image,
+                     const Light& light,
+                     absl::Span<const Lighting> truth) {
+  const Image shaded = ShadeShadows(image, light, truth, truth);
+  std::vector<Rgb> surfaces;
+  for (size_t i = 0; i < image.pixels.size(); ++i) {
+    if (image.pixels[i].is_surface()) surfaces.push_back(shaded.pixels()[i]);
+  }
+  return Exposure::For(surfaces);
 }
 
 Image ReducedPanel(const Image& full, absl::Span<const uint8_t> wrong, int factor) {

@@ -24,12 +24,19 @@ struct CropBox {
 
 // Grey by the cosine between surface and light; darker in shadow. Where `shadows` and `truth`
 // differ the pixel is kFalseShadowColor (dark, should be lit) or kLightLeakColor. The others are
-// tinted by MapColor() of the map that they ask, where `asked` is not empty and not negative.
+// tinted by MapColor() of the map that they ask, where `asked` is not empty and not negative. Grey
+// is exposed before it is marked or tinted.
 Image ShadeShadows(const SurfaceImage& image,
                    const Light& light,
                    absl::Span<const Lighting> truth,
                    absl::Span<const Lighting> shadows,
-                   absl::Span<const int> asked = {});
+                   absl::Span<const int> asked = {},
+                   const Exposure& exposure = Exposure());
+
+// What makes the true shadows of a scene that is mostly dark visible.
+Exposure ExposureFor(const SurfaceImage& image,
+                     const Light& light,
+                     absl::Span<const Lighting> truth);
 
 // `full` scaled down by a whole number; wrong pixels stay visible however thin they are. `wrong` is
 // row-major, not 0 at wrong pixels.

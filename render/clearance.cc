@@ -52,9 +52,9 @@ double Clearance(const RayCaster& caster, const Eigen::Vector3d& point) {
       const Eigen::Vector3i& corners = scene.triangles[i];
       least = std::min(least,
                        DistanceToTriangle(point,
-                                          scene.vertices[corners[0]].cast<double>(),
-                                          scene.vertices[corners[1]].cast<double>(),
-                                          scene.vertices[corners[2]].cast<double>()));
+                                          scene.WorldOf(corners[0]),
+                                          scene.WorldOf(corners[1]),
+                                          scene.WorldOf(corners[2])));
     }
   });
   return *std::min_element(nearest.begin(), nearest.end());

@@ -86,8 +86,7 @@ absl::StatusOr<PlanCosts> MeasurePlanCosts(const RayCaster& caster,
       Words(scene.triangles.size(), num_maps, caster.num_threads(), [&](int i, int k) {
         Eigen::Matrix<double, 4, 3> corners;
         for (int corner = 0; corner < 3; ++corner) {
-          corners.col(corner) =
-              scene.vertices[scene.triangles[i][corner]].cast<double>().homogeneous();
+          corners.col(corner) = scene.WorldOf(scene.triangles[i][corner]).homogeneous();
         }
         return MayReachInto(planes[k], corners);
       });

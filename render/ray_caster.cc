@@ -22,11 +22,12 @@ constexpr double kBoxMargin = 1e-3;
 // Sine between a ray and a plane below which their intersection has no digits.
 constexpr double kLeastSlope = 1e-4;
 
-RTCRay MakeRay(const Ray& ray, double near, double far) {
+// `start` is relative to the scene's origin.
+RTCRay MakeRay(const Eigen::Vector3d& start, const Ray& ray, double near, double far) {
   RTCRay out;
-  out.org_x = static_cast<float>(ray.origin.x());
-  out.org_y = static_cast<float>(ray.origin.y());
-  out.org_z = static_cast<float>(ray.origin.z());
+  out.org_x = static_cast<float>(start.x());
+  out.org_y = static_cast<float>(start.y());
+  out.org_z = static_cast<float>(start.z());
   out.dir_x = static_cast<float>(ray.direction.x());
   out.dir_y = static_cast<float>(ray.direction.y());
   out.dir_z = static_cast<float>(ray.direction.z());
@@ -142,9 +143,10 @@ Hit RayCaster::FirstHit(const Ray& ray, double near, double far) const {
   rtcInitIntersectContext(&context);
   const double skipped = state_->Skip(ray);
   if (std::isinf(skipped) || !(far > std::max(near, skipped))) return {};
-  const Ray approached = {ray.origin + skipped * ray.direction, ray.direction};
+  const Eigen::Vector3d origin = ray.origin - state_->scene.origin;
+  const Eigen::Vector3d start = origin + skipped * ray.direction;
   RTCRayHit query;
-  query.ray = MakeRay(approached, std::max(near - skipped, 0.0), far - skipped);
+  query.ray = MakeRay(start, ray, std::max(near - skipped, 0.0), far - skipped);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.primID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
@@ -159,7 +161,7 @@ Hit RayCaster::FirstHit(const Ray& ray, double near, double far) const {
   if (std::abs(slope) > kLeastSlope) {
     const Eigen::Vector3d vertex =
         state_->scene.vertices[state_->scene.triangles[hit.triangle][0]].cast<double>();
-    const double distance = normal.dot(vertex - ray.origin) / slope;
+    const double distance = normal.dot(vertex - origin) / slope;
     if (distance > 0.0) hit.distance = distance;
   }
   return hit;
@@ -170,8 +172,9 @@ bool RayCaster::IsBlocked(const Ray& ray, double near, double far) const {
   rtcInitIntersectContext(&context);
   const double skipped = state_->Skip(ray);
   if (std::isinf(skipped) || !(far > std::max(near, skipped))) return false;
-  const Ray approached = {ray.origin + skipped * ray.direction, ray.direction};
-  RTCRay query = MakeRay(approached, std::max(near - skipped, 0.0), far - skipped);
+  const Eigen::Vector3d origin = ray.origin - state_->scene.origin;
+  const Eigen::Vector3d start = origin + skipped * ray.direction;
+  RTCRay query = MakeRay(start, ray, std::max(near - skipped, 0.0), far - skipped);
   rtcOccluded1(state_->rtc_scene, &context, &query);
   return query.tfar < 0.0f;  // Embree's word for a hit; it was not negative before
 }
@@ -191,7 +194,8 @@ int64_t RayCaster::num_dropped_triangles() const { return state_->num_dropped_tr
 
 double RayCaster::Resolution(const Eigen::Vector3d& point) const {
   const double extent = state_->bounds.diagonal().norm();
-  return kRelativeResolution * (point.cwiseAbs().maxCoeff() + 0.1 * extent);
+  return kRelativeResolution *
+         ((point - state_->scene.origin).cwiseAbs().maxCoeff() + 0.1 * extent);
 }
 
 }  // namespace lightfit

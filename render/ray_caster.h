@@ -12,7 +12,7 @@
 
 #include "absl/status/statusor.h"
 #include "base/parallel.h"
-#include "render/scene.h"
+#include "scenes/scene.h"
 
 namespace lightfit {
 

@@ -26,9 +26,11 @@ SIZING = f"{FIT} optimizer/sizing"
 CORE = f"{SIZING} optimizer/tracking"
 PLANS = f"{CORE} partition partition/tracking"
 WIRE = f"{PLANS} lightfit proto wire"
-IO = f"{WIRE} io"
+IO = f"{WIRE} scenes io"
 JOBS = f"{IO} jobs jobs/*"
-EVERYTHING_BELOW_CLI = f"{JOBS} methods partition/* render render/* picture calls calls/* server"
+EVERYTHING_BELOW_CLI = (
+    f"{JOBS} methods partition/* scenes render render/* picture calls calls/* server"
+)
 
 MAY_INCLUDE = {
     "base": "",
@@ -45,9 +47,10 @@ MAY_INCLUDE = {
     "partition/tracking": f"{CORE} partition",
     "partition/published": f"{CORE} methods partition",
     "partition/shipped": f"{CORE} methods partition",
-    "render": f"{CORE} partition",
-    "render/generator": f"{CORE} render",
-    "render/shipped": f"{CORE} partition partition/shipped render",
+    "scenes": "base geometry",
+    "render": f"{CORE} partition scenes",
+    "render/generator": f"{CORE} scenes render",
+    "render/shipped": f"{CORE} partition partition/shipped scenes render",
     "proto": "lightfit",
     "wire": WIRE,
     "io": IO,
@@ -65,8 +68,8 @@ MAY_INCLUDE = {
     "cli": f"{EVERYTHING_BELOW_CLI} cli/*",
     "python": f"{IO} jobs calls calls/compare",
     "examples": f"{CORE} render render/generator lightfit",
-    "fuzz": f"{IO} jobs render calls",
-    "bench": f"{JOBS} methods partition/* render render/* picture tests",
+    "fuzz": f"{IO} jobs scenes render calls",
+    "bench": f"{JOBS} methods partition/* scenes render render/* picture tests",
     "bench/service.cc": f"{JOBS} bench calls server tests",
     "tests": f"{EVERYTHING_BELOW_CLI} cli cli/*",
 }

@@ -40,6 +40,11 @@ absl::Status TooManyLightsError(int64_t count) {
                       kMaxLights));
 }
 
+absl::Status NameTakenError(const Light& light) {
+  return absl::InvalidArgumentError(absl::StrFormat(
+      "light \"%s\": name is taken by an earlier light, want distinct names", light.name));
+}
+
 absl::Status ValidateNamedLight(const Light& light) {
   if (light.name.empty()) {
     return absl::InvalidArgumentError("light: name is empty, want one to tell lights apart by");
@@ -88,8 +93,7 @@ absl::Status ValidateLights(absl::Span<const Light> lights) {
   for (const Light& light : lights) {
     if (absl::Status status = ValidateNamedLight(light); !status.ok()) return status;
     if (!names.insert(light.name).second) {
-      return absl::InvalidArgumentError(absl::StrFormat(
-          "light \"%s\": name is taken by an earlier light, want distinct names", light.name));
+      return NameTakenError(light);
     }
   }
   return absl::OkStatus();

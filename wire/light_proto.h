@@ -24,6 +24,9 @@ absl::Status ValidateNamedLight(const Light& light);
 // InvalidArgument: more than kMaxLights.
 absl::Status TooManyLightsError(int64_t count);
 
+// InvalidArgument: an earlier light has its name.
+absl::Status NameTakenError(const Light& light);
+
 // Distinct names, at most kMaxLights, each of them valid.
 absl::Status ValidateLights(absl::Span<const Light> lights);
 

@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "geometry/ray_hull.h"
+#include "wire/frame_identity_proto.h"
 #include "wire/light_proto.h"
 #include "wire/matrix_proto.h"
 #include "wire/options_proto.h"
@@ -307,6 +308,7 @@ v1::SummaryFile SummarySetToProto(const SummarySet& set) {
   v1::SummaryFile proto;
   *proto.mutable_options() = FitOptionsToProto(set.options);
   for (const LightSummary& light : set.lights) *proto.add_lights() = LightSummaryToProto(light);
+  FramesToProto(set.frames, &proto);
   return proto;
 }
 
@@ -355,6 +357,8 @@ absl::StatusOr<SummarySet> SummarySetFromProto(const v1::SummaryFile& proto) {
       })) {
     return absl::InvalidArgumentError("lights: not in the order of their names");
   }
+  if (absl::Status status = FramesFromProto(proto, set.num_frames(), &set.frames); !status.ok())
+    return status;
   return set;
 }
 

@@ -93,11 +93,15 @@ LightSummary SummaryOfFrame(const Light& light,
   return result;
 }
 
-SummarySet MakeSummarySet(const FitOptions& options, std::vector<LightSummary> lights) {
+SummarySet MakeSummarySet(const FitOptions& options,
+                          std::vector<LightSummary> lights,
+                          const std::optional<FrameIdentity>& frame) {
   std::sort(lights.begin(), lights.end(), [](const LightSummary& a, const LightSummary& b) {
     return a.name() < b.name();
   });
-  return {options, std::move(lights)};
+  SummarySet set = {options, std::move(lights), {}};
+  if (frame.has_value()) set.frames.push_back(*frame);
+  return set;
 }
 
 absl::Status AddToSet(const SummarySet& other, SummarySet* sum) {
@@ -117,10 +121,10 @@ absl::Status AddToSet(const SummarySet& other, SummarySet* sum) {
         NamesOf(other),
         NamesOf(*sum)));
   }
-  SummarySet added = *sum;
-  for (size_t i = 0; i < added.lights.size(); ++i) {
+  std::vector<LightSummary> lights = sum->lights;
+  for (size_t i = 0; i < lights.size(); ++i) {
     const LightSummary& from = other.lights[i];
-    LightSummary& to = added.lights[i];
+    LightSummary& to = lights[i];
     status = CheckSameWeighing(from, to);
     if (status.ok()) status = AddToTotal(from.total, &to.total);
     if (!status.ok()) return status;
@@ -131,7 +135,14 @@ absl::Status AddToSet(const SummarySet& other, SummarySet* sum) {
       to.failure = from.failure;
     }
   }
-  *sum = std::move(added);
+  if (const std::optional<FrameIdentity> repeated = FirstInBoth(other.frames, sum->frames)) {
+    return absl::AlreadyExistsError(
+        absl::StrFormat("%s is in what it is to be added to already, and would count twice: leave "
+                        "one of the two out",
+                        IdentityText(*repeated)));
+  }
+  sum->lights = std::move(lights);
+  InsertInOrder(other.frames, &sum->frames);
   return absl::OkStatus();
 }
 

@@ -18,6 +18,7 @@
 #include "geometry/light.h"
 #include "optimizer/energy/summary_total.h"
 #include "optimizer/fit_options.h"
+#include "wire/frame_identity.h"
 
 namespace lightfit {
 
@@ -39,6 +40,13 @@ struct LightSummary {
 struct SummarySet {
   FitOptions options;                // what the samples were chosen and weighed by
   std::vector<LightSummary> lights;  // by name; all have the same number of frames
+
+  // Which frames these are, in ascending order; fewer where files of programs that did not say so
+  // have a part in it.
+  std::vector<FrameIdentity> frames;
+
+  int64_t num_frames() const { return lights.empty() ? 0 : lights.front().num_frames(); }
+  int64_t num_unknown_frames() const { return num_frames() - static_cast<int64_t>(frames.size()); }
 };
 
 // Longer messages of failures are cut.
@@ -50,12 +58,14 @@ LightSummary SummaryOfFrame(const Light& light,
                             absl::string_view frame,
                             const FitOptions& options);
 
-// Puts the lights in order. They must be of the same frames, and have names of their own.
-SummarySet MakeSummarySet(const FitOptions& options, std::vector<LightSummary> lights);
+// Puts the lights in order. They must be of the same frame, and have names of their own.
+SummarySet MakeSummarySet(const FitOptions& options,
+                          std::vector<LightSummary> lights,
+                          const std::optional<FrameIdentity>& frame = std::nullopt);
 
-// Adds `other` to `sum`. Nothing tells frames apart: one that is added twice counts twice.
-// InvalidArgument, and `sum` as it was, unless lights, options and weighing are the same; the
-// message has both values, those of `other` first.
+// Adds `other` to `sum`. InvalidArgument, and `sum` as it was, unless lights, options and weighing
+// are the same; the message has both values, those of `other` first. AlreadyExists, and as it was,
+// when a frame is in both.
 absl::Status AddToSet(const SummarySet& other, SummarySet* sum);
 
 }  // namespace lightfit

@@ -24,8 +24,10 @@ constexpr char kExamples[] =
     "  lightfit allocate 0001.exr --lights scene.json --budget 4096x4096 --json maps.json\n"
     "  lightfit allocate 0001.exr --lights scene.json --budget 2048x2048 --power-of-two "
     "--weight sun=2\n"
-    "  lightfit allocate 0001.exr --lights scene.json --tolerance rms:1.0 --image 1920x1080\n"
-    "  lightfit allocate 0001.exr --lights scene.json --tolerance p99:1.5\n"
+    "  lightfit allocate 0001.exr --lights scene.json --tolerance rms:1.0\n"
+    "  lightfit allocate 0001.exr --lights scene.json --tolerance p99:3\n"
+    "  lightfit allocate 0001.exr --lights scene.json --tolerance p99:4 --image 1920x1080 --only "
+    "key\n"
     "  lightfit allocate --summary shot.summary --budget 4096x4096 --json maps.json\n"
     "  lightfit allocate 0001.exr --lights scene.json --budget 4096x4096 --maps 4 --json "
     "maps.json\n"
@@ -35,7 +37,8 @@ constexpr char kExamples[] =
     "A tolerance bounds how far one texel reaches on the screen at the shadow edges, in pixels of\n"
     "the final image: in the root mean square (rms), for 99 % of the edge pixels of the read-back\n"
     "(p99), or for all of them (worst). It holds for those pixels, each measured; nothing is\n"
-    "promised in between. The fit then minimises that figure, so that --metric does not apply.\n"
+    "promised in between. Where no map keeps it the message says what could be kept. The fit then "
+    "minimises that figure, so that --metric does not apply.\n"
     "Summaries of a whole shot take a budget, or where they were summed with --metric l2 an rms\n"
     "tolerance, of all frames' edge pixels together and in pixels of the read-backs. Sums of the\n"
     "l1 metrics weigh samples by square maps; to weigh them by the maps found, run lightfit\n"
@@ -66,6 +69,13 @@ CLI::Option* AddParsed(CLI::App* app,
       meaning);
 }
 
+// A single number would be taken for the width as likely as for a square.
+absl::StatusOr<MapSize> ParseImageSize(const std::string& text) {
+  if (ParseSides(text).has_value()) return ParseMapSize(text);
+  return absl::InvalidArgumentError(
+      absl::StrCat("\"", text, "\" is no size, want WIDTHxHEIGHT in pixels such as 1920x1080"));
+}
+
 void DeclareGoal(CLI::App* app, AllocateFlags* flags) {
   const std::string group = "Goal (one of --budget and --tolerance)";
   CLI::Option* budget = AddParsed(
@@ -89,7 +99,7 @@ void DeclareGoal(CLI::App* app, AllocateFlags* flags) {
   AddParsed(
       app,
       "--image",
-      ParseMapSize,
+      ParseImageSize,
       [flags](MapSize image) { flags->image = image; },
       "Size of the final image, pixels; where its shape is not the read-back's, the larger ratio "
       "of the two counts [the read-back's]")
@@ -173,7 +183,7 @@ void DeclareAllocateFlags(CLI::App* app, AllocateFlags* flags) {
       ->type_name("FILE")
       ->group(input);
   DeclareLightFlags(app, &fit->lights, input);
-  DeclareOnlyFlag(app, input, fit);
+  DeclareOnlyFlag(app, input, &fit->only);
   DeclareReadbackFlags(app, input, fit);
   DeclareCameraFlags(app, kCameraGroup, fit);
   DeclareMethodFlags(app, &fit->options);
@@ -186,7 +196,8 @@ void DeclareAllocateFlags(CLI::App* app, AllocateFlags* flags) {
   app->add_option("--json", fit->json_path, "Write the sizes, matrices and figures to this file")
       ->type_name("FILE.json")
       ->group(output);
-  app->add_flag("--quiet", fit->quiet, "No table and no progress; errors and warnings only")
+  DeclareLegendFlag(app, output, &fit->legend);
+  app->add_flag("-q,--quiet", fit->quiet, "No table and no progress; errors and warnings only")
       ->group(output);
   app->footer(kExamples);
   app->callback([app, flags] {
@@ -227,6 +238,13 @@ std::string ToleranceText(const Tolerance& tolerance) {
       break;
   }
   return "every footprint" + limit;
+}
+
+std::string ToleranceThatHolds(const Tolerance& tolerance, double reached_px) {
+  // Three digits, rounded up.
+  const double unit = std::pow(10.0, std::floor(std::log10(reached_px)) - 2.0);
+  const double limit = std::ceil(reached_px / unit) * unit;
+  return absl::StrFormat("%s:%.3g", WordFor(ToleranceWords(), tolerance.kind), limit);
 }
 
 absl::StatusOr<std::pair<std::string, double>> ParseWeight(const std::string& text) {

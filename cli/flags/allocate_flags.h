@@ -42,6 +42,10 @@ absl::StatusOr<Tolerance> ParseTolerance(const std::string& text);
 // What the words of ParseTolerance() say: "99 % of the footprints at most 1.5 pixels".
 std::string ToleranceText(const Tolerance& tolerance);
 
+// "p99:2.31": the same kind of tolerance, no less than what was reached, as ParseTolerance() takes
+// it.
+std::string ToleranceThatHolds(const Tolerance& tolerance, double reached_px);
+
 // "sun=2": a name and a number above 0.
 absl::StatusOr<std::pair<std::string, double>> ParseWeight(const std::string& text);
 

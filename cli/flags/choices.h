@@ -1,6 +1,7 @@
 // cli/flags/choices.h
 //
-// The words of the command line for the library's enumerations, both ways.
+// The words of the command line for the library's enumerations, both ways: options, help and
+// completion have them from here. What else people call them is understood too.
 #pragma once
 
 #include <string>
@@ -10,6 +11,7 @@
 #include "geometry/camera.h"
 #include "geometry/clip.h"
 #include "optimizer/fit_options.h"
+#include "render/judge.h"
 
 namespace lightfit::cli {
 
@@ -23,6 +25,15 @@ const Words<Cover>& CoverWords();
 const Words<BorderChoice>& BorderWords();
 const Words<DepthKind>& DepthKindWords();
 const Words<ClipConvention>& ClipWords();
+const Words<Bias>& BiasWords();
+const Words<std::string>& LogLevelWords();
+
+// "Reversed_Z" is "reversed-z": upper case and underscores do not count.
+std::string PlainWord(std::string text);
+
+// The words that mean what `text` says: itself, and where it is what others call them, as "d3d" is
+// "direct3d", that. Of several the first that a table has counts.
+std::vector<std::string> MeantBy(const std::string& text);
 
 template <typename Value>
 std::vector<std::string> WordsOnly(const Words<Value>& words) {
@@ -30,6 +41,17 @@ std::vector<std::string> WordsOnly(const Words<Value>& words) {
   only.reserve(words.size());
   for (const auto& [word, value] : words) only.push_back(word);
   return only;
+}
+
+// The value that `text` stands for, in any case and by any name; null where there is none.
+template <typename Value>
+const Value* FindValue(const Words<Value>& words, const std::string& text) {
+  for (const std::string& meant : MeantBy(text)) {
+    for (const auto& [word, value] : words) {
+      if (word == meant) return &value;
+    }
+  }
+  return nullptr;
 }
 
 template <typename Value>

@@ -12,6 +12,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
+#include "cli/flags/choice_option.h"
 #include "cli/flags/size_flags.h"
 #include "jobs/compare/rows.h"
 
@@ -24,7 +25,7 @@ constexpr char kExamples[] =
     "Examples:\n"
     "  lightfit compare sponza.glb --camera 3.5,1.7,-4.2:-9,2.2,-4.4:55 --light sun=sun:1,-3,0.5 "
     "\\\n"
-    "      --picture methods.png\n"
+    "      --picture methods.png --masks masks\n"
     "  lightfit compare generate --camera 0,1.7,18:0,0.5,0 --random-lights 500 --csv lights.csv\n"
     "  lightfit compare frame.exr --lights scene.json --matrix engine=engine.json\n"
     "  lightfit compare sponza.glb --camera 3.5,1.7,-4.2:-9,2.2,-4.4:55 --light sun=sun:1,-3,0.5 "
@@ -181,17 +182,22 @@ void DeclareOutput(CLI::App* app, CompareFlags* flags) {
                   "The light to draw [where focused and lightfit differ most]")
       ->type_name("LIGHT")
       ->group(group);
-  app->add_option_function<std::string>(
-         "--bias",
-         [flags](const std::string& text) {
-           flags->picture_bias = text == "practical" ? Bias::kPractical : Bias::kIdeal;
-         },
-         "Whose wrong pixels the picture shows: of sampling alone, or with a renderer's bias "
-         "[ideal]")
-      ->check(CLI::IsMember({"ideal", "practical"}))
-      ->type_name("ideal|practical")
+  AddChoice(app,
+            "--bias",
+            BiasWords(),
+            &flags->picture_bias,
+            "Whose wrong pixels the picture shows: of sampling alone, or with a renderer's bias "
+            "[ideal]")
       ->group(group);
-  app->add_flag("--quiet", flags->quiet, "No table and no progress; errors and warnings only")
+  app->add_option("--masks",
+                  flags->masks_path,
+                  "Write an image of each light's wrong pixels into this folder, LIGHT.exr: "
+                  "channels METHOD.ideal and METHOD.practical, 1 where the method is wrong, and "
+                  "truth.shadow, truth.facing")
+      ->type_name("FOLDER")
+      ->group(group);
+  DeclareLegendFlag(app, group, &flags->legend);
+  app->add_flag("-q,--quiet", flags->quiet, "No table and no progress; errors and warnings only")
       ->group(group);
 }
 
@@ -224,7 +230,7 @@ void DeclareSizeFlags(CLI::App* app, CompareFlags* flags) {
          [flags](const std::string& text) {
            ParseInto("--map", text, ParseJudgedMap, &flags->map);
          },
-         "Every shadow map, texels [400x400]")
+         "Every shadow map, texels [1024x1024]")
       ->type_name("WIDTHxHEIGHT")
       ->group(group);
 }

@@ -44,7 +44,7 @@ struct CompareFlags {
 
   PixelSize screen = {750, 750};
   std::optional<PixelSize> readback;  // absent: DefaultReadbackSize()
-  MapSize map = {400, 400};
+  MapSize map = FitFlags().map;
   std::vector<MatrixFlag> matrices;
   JudgeOptions judge = CompareOptions().judge;
   CrawlFlags crawl;
@@ -55,6 +55,8 @@ struct CompareFlags {
   std::string picture_path;
   std::string picture_light;  // empty: MostTellingLight()
   Bias picture_bias = Bias::kIdeal;
+  std::string masks_path;  // a folder
+  bool legend = false;     // say what the columns of tables mean
   bool quiet = false;
 
   bool is_readback() const;  // rather than a scene

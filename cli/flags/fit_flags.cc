@@ -2,12 +2,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
-#include "base/suggest.h"
-#include "cli/flags/choices.h"
+#include "cli/flags/choice_option.h"
 #include "cli/flags/size_flags.h"
+#include "io/summary_file.h"
 
 namespace lightfit::cli {
 namespace {
@@ -19,9 +20,10 @@ constexpr char kMethodGroup[] = "Method";
 constexpr char kExamples[] =
     "Examples:\n"
     "  lightfit fit 0001.exr --lights scene.json --json matrices.json --picture gain.png\n"
-    "  lightfit fit 0001.exr --light sun=sun:-0.3,0.2,-1 --map 2048x1024 --clip direct3d\n"
+    "  lightfit fit 0001.exr --light sun=sun:-0.93,-0.24,-0.27 --map 2048x1024 --clip direct3d\n"
     "  lightfit fit 0001.exr --lights scene.json --maps 4 --texels 2048x2048 --json maps.json\n"
     "  lightfit fit 0001.exr --lights scene.json --only key --as-published\n"
+    "  lightfit fit 0001.exr --lights scene.json --csv lights.csv --footprint pixels.exr\n"
     "  lightfit fit --summary part1.summary part2.summary --json shot.json\n"
     "\n"
     "Units: positions and depth in world units, maps in texels, images in pixels.\n"
@@ -32,31 +34,18 @@ constexpr char kExamples[] =
     "may\n"
     "lie in several parts; what was taken stands in the first line.";
 
-// An option whose value is one of a few words. CLI11's own transformer would also take the numbers
-// behind the words.
-template <typename Value, typename Target>
-CLI::Option* AddChoice(CLI::App* app,
-                       const std::string& flag,
-                       const Words<Value>& words,
-                       Target* target,
-                       const std::string& meaning) {
-  const auto parse = [=](const std::string& text) {
-    for (const auto& [word, value] : words) {
-      if (word == text) {
-        *target = value;
-        return;
-      }
-    }
-    const std::vector<std::string> choices = WordsOnly(words);
+// A distance that may be infinite, by whatever name and in any case.
+CLI::Option* AddDistance(CLI::App* app,
+                         const std::string& flag,
+                         double* distance,
+                         const std::string& meaning) {
+  const auto parse = [flag, distance](const std::string& text) {
+    // Takes "inf" and "infinity" too; a sign before them makes them none that is positive.
+    if (absl::SimpleAtod(text, distance) && *distance > 0.0) return;
     throw CLI::ValidationError(flag,
-                               absl::StrCat("there is no \"",
-                                            text,
-                                            "\", want ",
-                                            absl::StrJoin(choices, ", "),
-                                            DidYouMean(text, choices)));
+                               absl::StrCat("\"", text, "\", want a distance above 0, or inf"));
   };
-  return app->add_option_function<std::string>(flag, parse, meaning)
-      ->type_name(absl::StrJoin(WordsOnly(words), "|"));
+  return app->add_option_function<std::string>(flag, parse, meaning)->type_name("DISTANCE|inf");
 }
 
 void DeclareInput(CLI::App* app, FitFlags* flags) {
@@ -70,7 +59,7 @@ void DeclareInput(CLI::App* app, FitFlags* flags) {
       ->type_name("FILE")
       ->group(group);
   DeclareLightFlags(app, &flags->lights, group);
-  DeclareOnlyFlag(app, group, flags);
+  DeclareOnlyFlag(app, group, &flags->only);
   DeclareReadbackFlags(app, group, flags);
   DeclareCoverReadbackFlag(app, group, flags);
 }
@@ -82,6 +71,12 @@ void CheckNeedsOfFit(const CLI::App& app, const FitFlags& flags) {
     throw CLI::ValidationError("--picture",
                                "needs the pixels of a read-back, and a summary has none; draw one "
                                "frame with lightfit fit READBACK.exr --picture");
+  }
+  for (const char* flag : {"--csv", "--footprint"}) {
+    if (app.count(flag) == 0) continue;
+    throw CLI::ValidationError(flag,
+                               "needs the pixels of a read-back, and a summary has none; name one "
+                               "frame, lightfit fit READBACK.exr, or with --csv run lightfit shot");
   }
   if (app.count("--as-published") > 0) {
     throw CLI::ValidationError("--as-published",
@@ -110,14 +105,24 @@ void DeclareOutput(CLI::App* app, FitFlags* flags) {
   app->add_option("--picture", flags->picture_path, "Draw before and after, per light")
       ->type_name("FILE.png")
       ->group(group);
-  app->add_flag("--quiet", flags->quiet, "No table and no progress; errors and warnings only")
+  app->add_option("--csv", flags->csv_path, "Write one line for each light, with all figures")
+      ->type_name("FILE.csv")
+      ->group(group);
+  app->add_option("--footprint",
+                  flags->footprint_path,
+                  "Write an image of each light's footprints and of the wrong pixels foretold, "
+                  "channels footprint.LIGHT and wrong.LIGHT")
+      ->type_name("FILE.exr")
+      ->group(group);
+  DeclareLegendFlag(app, group, &flags->legend);
+  app->add_flag("-q,--quiet", flags->quiet, "No table and no progress; errors and warnings only")
       ->group(group);
 }
 
 }  // namespace
 
-void DeclareOnlyFlag(CLI::App* app, const std::string& group, FitFlags* flags) {
-  app->add_option("--only", flags->only, "This light only (may be repeated)")
+void DeclareOnlyFlag(CLI::App* app, const std::string& group, std::vector<std::string>* only) {
+  app->add_option("--only", *only, "This light only (may be repeated)")
       ->type_name("LIGHT")
       ->expected(1)
       ->take_all()
@@ -130,6 +135,13 @@ void DeclareReadbackFlags(CLI::App* app, const std::string& group, FitFlags* fla
             DepthKindWords(),
             &flags->depth_kind,
             "What the depth channel holds [camera-z, or as the camera file says]")
+      ->group(group);
+  app->add_option("--background",
+                  flags->background,
+                  "Pixels at this depth or beyond are background; inf: none before 1e9 [one "
+                  "greatest depth that many pixels share, far beyond the rest]")
+      ->type_name("DEPTH")
+      ->check(CLI::PositiveNumber)
       ->group(group);
   app->add_option("--depth-channel",
                   flags->depth_channel,
@@ -201,16 +213,14 @@ void DeclareCameraExrFlags(CLI::App* app, const std::string& group, CameraExrOpt
            camera->convention = *convention;
          },
          "Who wrote worldToCamera and worldToNDC: openexr, mantra or pbrt; words such as "
-         "column-vectors,y-up change it [openexr]")
+         "column-vectors,y-up change it; shifted: the lens is [openexr]")
       ->type_name("WORDS")
       ->group(group);
   app->add_option("--near", camera->near, "Near clip plane, world units (NDC depth only)")
       ->type_name("DISTANCE")
       ->check(CLI::PositiveNumber)
       ->group(group);
-  app->add_option("--far", camera->far, "Far clip plane, world units (NDC depth only)")
-      ->type_name("DISTANCE")
-      ->check(CLI::PositiveNumber)
+  AddDistance(app, "--far", &camera->far, "Far clip plane, world units, or inf (NDC depth only)")
       ->group(group);
   app->add_option(
          "--pixel-aspect", camera->pixel_aspect, "Width over height of a pixel [as the file says]")
@@ -289,6 +299,10 @@ void DeclareClipFlag(CLI::App* app, const std::string& group, ClipConvention* cl
       ->group(group);
 }
 
+void DeclareLegendFlag(CLI::App* app, const std::string& group, bool* legend) {
+  app->add_flag("--legend", *legend, "Say below the table what its columns mean")->group(group);
+}
+
 void DeclareFitFlags(CLI::App* app, FitFlags* flags) {
   flags->options.border = BorderChoice::kAutomatic;
   DeclareInput(app, flags);
@@ -308,9 +322,26 @@ void DeclareFitFlags(CLI::App* app, FitFlags* flags) {
   });
 }
 
+void CheckIsReadback(const CLI::App& app, const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) {
+    throw CLI::ValidationError(path,
+                               absl::StrCat("is a folder: for all its frames lightfit shot ",
+                                            path,
+                                            "; lightfit ",
+                                            app.get_name(),
+                                            " takes one read-back of them"));
+  }
+  if (IsSummaryFile(path)) {
+    throw CLI::ValidationError(
+        path, absl::StrCat("is a summary: lightfit ", app.get_name(), " --summary ", path));
+  }
+}
+
 void CheckSource(const CLI::App& app,
                  const FitFlags& flags,
                  const std::vector<std::string>& readback_groups) {
+  if (!flags.readback_path.empty()) CheckIsReadback(app, flags.readback_path);
   if (flags.readback_path.empty() == flags.summary_paths.empty()) {
     throw CLI::ValidationError(app.get_name(),
                                "want a read-back or --summary, one of the two; lightfit summarize "

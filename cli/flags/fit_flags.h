@@ -37,6 +37,7 @@ struct FitFlags {
   ClipConvention clip = ClipConvention::Vulkan();
 
   std::optional<DepthKind> depth_kind;  // absent: the camera file's, or kCameraZ
+  std::optional<float> background;      // absent: looked for
   std::string depth_channel;
   std::string view;  // of a stereo file
   std::string shadow_channel_format;
@@ -50,7 +51,10 @@ struct FitFlags {
   CameraExrOptions camera_exr;
 
   std::string json_path;
+  std::string csv_path;
   std::string picture_path;
+  std::string footprint_path;
+  bool legend = false;  // say what the columns of tables mean
   bool quiet = false;
 };
 
@@ -61,8 +65,9 @@ void DeclareFitFlags(CLI::App* app, FitFlags* flags);
 // Parts of it, for verbs that fit or read a read-back too: which of the lights; what the channels
 // of the read-back mean; its camera; what the camera's attributes in its header mean; how it is
 // fitted, and of that what its samples are summed by; the map's size and clip space; clip space
-// alone. The border that `options` has when the method is declared is the default.
-void DeclareOnlyFlag(CLI::App* app, const std::string& group, FitFlags* flags);
+// alone; whether tables are explained. The border that `options` has when the method is declared is
+// the default.
+void DeclareOnlyFlag(CLI::App* app, const std::string& group, std::vector<std::string>* only);
 void DeclareReadbackFlags(CLI::App* app, const std::string& group, FitFlags* flags);
 void DeclareCoverReadbackFlag(CLI::App* app, const std::string& group, FitFlags* flags);
 void DeclareCameraFlags(CLI::App* app, const std::string& group, FitFlags* flags);
@@ -71,6 +76,7 @@ void DeclareMethodFlags(CLI::App* app, FitOptions* options);
 void DeclareSummingFlags(CLI::App* app, FitOptions* options);
 void DeclareMapFlags(CLI::App* app, const std::string& group, FitFlags* flags);
 void DeclareClipFlag(CLI::App* app, const std::string& group, ClipConvention* clip);
+void DeclareLegendFlag(CLI::App* app, const std::string& group, bool* legend);
 
 // For verbs that take a read-back or summaries: throws CLI::ValidationError unless it is one of the
 // two, and with summaries no option of the groups that are about a read-back.

@@ -4,13 +4,15 @@
 #include <algorithm>
 #include <utility>
 
+#include "cli/exit_code.h"
 #include "io/lights_file.h"
 #include "wire/light_proto.h"
 
 namespace lightfit::cli {
 
 void DeclareLightFlags(CLI::App* app, LightFlags* flags, const std::string& group) {
-  app->add_option("--lights", flags->path, "JSON file with the lights")
+  app->add_option(
+         "--lights", flags->path, "JSON file with the lights, or a glTF file that has lights")
       ->type_name("FILE")
       ->group(group);
   app->add_option_function<std::vector<std::string>>(
@@ -31,28 +33,51 @@ void DeclareLightFlags(CLI::App* app, LightFlags* flags, const std::string& grou
       ->group(group);
 }
 
-absl::StatusOr<std::vector<Light>> ReadLights(const LightFlags& flags) {
-  std::vector<Light> lights;
+absl::StatusOr<std::vector<ListedLight>> ListLights(const LightFlags& flags) {
+  std::vector<ListedLight> lights;
   if (!flags.path.empty()) {
-    absl::StatusOr<std::vector<Light>> from_file = ReadLightsFile(flags.path);
+    absl::StatusOr<std::vector<ListedLight>> from_file = ReadLightList(flags.path);
     if (!from_file.ok()) return from_file.status();
     lights = *std::move(from_file);
   }
-  for (Light light : flags.extra) {
-    const auto same = std::find_if(lights.begin(), lights.end(), [&light](const Light& other) {
-      return other.name == light.name;
-    });
-    if (same != lights.end()) {
-      light.shadow_bit = same->shadow_bit;
-      *same = light;
+  for (const Light& light : flags.extra) {
+    const auto has_name = [&light](const ListedLight& other) {
+      return other.light.name == light.name;
+    };
+    const auto same = std::find_if(lights.begin(), lights.end(), has_name);
+    if (same == lights.end()) {
+      lights.push_back({light, absl::OkStatus()});
     } else {
-      light.shadow_bit = static_cast<int>(lights.size());
-      lights.push_back(light);
+      *same = {light, absl::OkStatus()};
+      lights.erase(std::remove_if(same + 1, lights.end(), has_name), lights.end());
     }
   }
-  absl::Status status = ValidateLights(lights);
-  if (!status.ok()) return status;
+  for (size_t i = 0; i < lights.size(); ++i) lights[i].light.shadow_bit = static_cast<int>(i);
   return lights;
+}
+
+absl::StatusOr<std::vector<Light>> ReadLights(const LightFlags& flags) {
+  absl::StatusOr<std::vector<ListedLight>> list = ListLights(flags);
+  if (!list.ok()) return list.status();
+  std::vector<Light> lights;
+  for (ListedLight& listed : *list) {
+    if (!listed.status.ok()) continue;
+    lights.push_back(std::move(listed.light));
+    lights.back().shadow_bit = static_cast<int>(lights.size()) - 1;
+  }
+  if (lights.empty() && !list->empty()) return list->front().status;
+  if (absl::Status status = ValidateLights(lights); !status.ok()) return status;
+  return lights;
+}
+
+int PrintUnusable(const std::vector<ListedLight>& lights, absl::string_view what) {
+  int num_unusable = 0;
+  for (const ListedLight& listed : lights) {
+    if (listed.status.ok()) continue;
+    PrintFailedLight(what, listed.light.name, listed.status);
+    ++num_unusable;
+  }
+  return num_unusable;
 }
 
 }  // namespace lightfit::cli

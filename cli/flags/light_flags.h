@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
 #include "geometry/light.h"
+#include "io/lights_file.h"
 
 namespace CLI {
 class App;
@@ -25,8 +27,16 @@ struct LightFlags {
 // Declares the options on `app`, to be parsed into `flags`, which must stay where it is.
 void DeclareLightFlags(CLI::App* app, LightFlags* flags, const std::string& group);
 
-// Those of the file, then those of --light, with shadow bits in that order; maybe none. Valid, with
-// distinct names, at most kMaxLights.
+// Those of the file, then those of --light, in that order; maybe none. One of --light replaces
+// those of the file that have its name, whatever is wrong with them. As many as there are, each
+// with a status; shadow_bit is the number in this list.
+absl::StatusOr<std::vector<ListedLight>> ListLights(const LightFlags& flags);
+
+// Those of them that can be used; there are at most kMaxLights.
 absl::StatusOr<std::vector<Light>> ReadLights(const LightFlags& flags);
+
+// Says on stderr which lights are of no use and why: "no matrix for light "env": ..." where `what`
+// is "matrix". Returns how many they are.
+int PrintUnusable(const std::vector<ListedLight>& lights, absl::string_view what);
 
 }  // namespace lightfit::cli

@@ -13,10 +13,15 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
 #include "base/suggest.h"
+#include "cli/flags/fit_flags.h"
+#include "cli/flags/fit_inputs.h"
+#include "cli/flags/size_flags.h"
 #include "geometry/resized_camera.h"
+#include "geometry/sized_camera.h"
 #include "io/camera_file.h"
 #include "render/random_suns.h"
-#include "render/scene_file.h"
+#include "scenes/gltf_view.h"
+#include "scenes/scene_file.h"
 
 namespace lightfit::cli {
 namespace {
@@ -45,7 +50,7 @@ bool IsGenerator(const std::string& text) {
 // A file of that name is a file, whatever else the name could mean.
 bool IsView(const std::string& text) {
   std::error_code error;
-  return absl::StrContains(text, ',') && !std::filesystem::exists(text, error);
+  return absl::StrContains(text, ',') && !IsGltf(text) && !std::filesystem::exists(text, error);
 }
 
 template <typename Parse, typename Target>
@@ -65,7 +70,8 @@ void DeclareCamera(CLI::App* app, SceneFlags* flags) {
            if (IsView(text)) ParseInto("--camera", text, ParseView, &flags->view);
          },
          "Where the eye is, what it looks at and the vertical field of view in degrees [60]; or "
-         "a JSON file with the camera, or a scene file")
+         "a JSON file with the camera, a scene file with its frames, or a glTF file, as "
+         "scene.glb:NAME for one of several cameras [that of SCENE, if it is a glTF file with one]")
       ->type_name("X,Y,Z:X,Y,Z[:DEG]|FILE")
       ->group(group);
   app->add_option_function<std::string>(
@@ -80,18 +86,25 @@ void DeclareCamera(CLI::App* app, SceneFlags* flags) {
       ->group(group);
 }
 
-absl::StatusOr<Camera> CameraFromFile(const SceneFlags& flags, int width, int height) {
+absl::StatusOr<Camera> CameraFromFile(const SceneFlags& flags,
+                                      const std::string& path,
+                                      int width,
+                                      int height) {
   constexpr double kAspectTolerance = 0.01;  // sizes are rounded to pixels
-  absl::StatusOr<StatedCamera> file = ReadCameraFile(flags.camera, flags.frame);
+  absl::StatusOr<StatedCamera> file = ReadCameraFile(path, flags.frame);
   if (!file.ok()) return file.status();
-  const Camera& camera = file->camera;
+  const absl::StatusOr<Camera> sized = SizedCamera(file->camera, width, height);
+  if (!sized.ok()) {
+    return absl::InvalidArgumentError(absl::StrCat(path, ": ", sized.status().message()));
+  }
+  const Camera& camera = *sized;
   const double scale_x = static_cast<double>(width) / camera.width;
   const double scale_y = static_cast<double>(height) / camera.height;
   if (!(std::abs(scale_x / scale_y - 1.0) <= kAspectTolerance)) {
     return absl::InvalidArgumentError(absl::StrFormat(
         "--camera %s: its image is %dx%d, %dx%d is asked for: want the same ratio of width to "
         "height, such as %dx%d",
-        flags.camera,
+        path,
         camera.width,
         camera.height,
         width,
@@ -120,6 +133,7 @@ void DeclareSceneFlags(CLI::App* app, SceneFlags* flags, const std::string& type
   DeclareCamera(app, flags);
   const std::string group = "Lights";
   DeclareLightFlags(app, &flags->lights, group);
+  DeclareOnlyFlag(app, group, &flags->only);
   app->add_option("--random-lights",
                   flags->num_random_lights,
                   "As many suns sun001 ..., uniform on the hemisphere around --up")
@@ -151,12 +165,24 @@ absl::StatusOr<LoadedScene> LoadScene(const SceneFlags& flags) {
   return LoadedScene{*std::move(caster), title, num_dropped};
 }
 
+std::string CameraPath(const SceneFlags& flags) {
+  const bool is_of_scene =
+      flags.camera.empty() && IsGltf(flags.scene) && !ContentsOf(flags.scene).cameras.empty();
+  return is_of_scene ? flags.scene : flags.camera;
+}
+
+bool TakesLightsOfScene(const SceneFlags& flags) {
+  return flags.lights.path.empty() && flags.lights.extra.empty() && flags.num_random_lights == 0 &&
+         IsGltf(flags.scene) && ContentsOf(flags.scene).num_lights > 0;
+}
+
 absl::StatusOr<Camera> MakeViewCamera(const SceneFlags& flags, int width, int height) {
-  if (flags.camera.empty()) {
+  const std::string path = CameraPath(flags);
+  if (path.empty()) {
     return absl::InvalidArgumentError(
         "no camera: want --camera EYE:TARGET such as --camera 0,1.7,18:0,0.5,0, or --camera FILE");
   }
-  if (!flags.view.has_value()) return CameraFromFile(flags, width, height);
+  if (!flags.view.has_value()) return CameraFromFile(flags, path, width, height);
   const ViewFlags& view = *flags.view;
   const Eigen::Vector3d forward = view.target - view.eye;
   if (!(forward.norm() > 0.0)) {
@@ -182,7 +208,9 @@ absl::StatusOr<Camera> MakeViewCamera(const SceneFlags& flags, int width, int he
 }
 
 absl::StatusOr<std::vector<Light>> SceneLights(const SceneFlags& flags) {
-  absl::StatusOr<std::vector<Light>> lights = ReadLights(flags.lights);
+  LightFlags given = flags.lights;
+  if (TakesLightsOfScene(flags)) given.path = flags.scene;
+  absl::StatusOr<std::vector<Light>> lights = ReadLights(given);
   if (!lights.ok()) return lights.status();
   if (flags.num_random_lights > 0) {
     if (!(flags.up.norm() > 0.0)) {
@@ -206,7 +234,7 @@ absl::StatusOr<std::vector<Light>> SceneLights(const SceneFlags& flags) {
     return absl::InvalidArgumentError(
         "no lights: want --lights FILE, --light NAME=sun:X,Y,Z or --random-lights COUNT");
   }
-  return lights;
+  return ChooseLights(*lights, flags.only);
 }
 
 absl::StatusOr<SceneGeneratorOptions> ParseGenerator(const std::string& text) {
@@ -259,13 +287,12 @@ absl::StatusOr<SceneGeneratorOptions> ParseGenerator(const std::string& text) {
 
 absl::StatusOr<PixelSize> ParsePixelSize(const std::string& text) {
   constexpr int64_t kMaxPixels = int64_t{1} << 25;  // 2.4 GB while rendering
-  const std::vector<std::string> sides = absl::StrSplit(text, 'x');
-  PixelSize size;
-  if (sides.size() != 2 || !absl::SimpleAtoi(sides[0], &size.width) ||
-      !absl::SimpleAtoi(sides[1], &size.height) || size.width < 1 || size.height < 1) {
+  const std::optional<std::pair<int, int>> sides = ParseSides(text);
+  if (!sides.has_value() || sides->first < 1 || sides->second < 1) {
     return absl::InvalidArgumentError(
         absl::StrCat("\"", text, "\" is no size, want WIDTHxHEIGHT in pixels such as 180x180"));
   }
+  const PixelSize size = {sides->first, sides->second};
   if (int64_t{size.width} * size.height > kMaxPixels) {
     return absl::InvalidArgumentError(
         absl::StrCat(text, ": want at most ", kMaxPixels, " pixels, such as 8192x4096"));

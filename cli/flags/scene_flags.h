@@ -38,6 +38,7 @@ struct SceneFlags {
   int frame = 0;                                   // of the camera file
   Eigen::Vector3d up = Eigen::Vector3d::UnitY();   // of the view and of random lights
   LightFlags lights;
+  std::vector<std::string> only;  // names; empty: all
   int num_random_lights = 0;
   uint64_t seed = 1;
 };
@@ -55,6 +56,13 @@ struct LoadedScene {
 };
 
 absl::StatusOr<LoadedScene> LoadScene(const SceneFlags& flags);
+
+// The file of the camera: --camera, or the scene itself when none is given and it is a glTF file
+// with cameras. Empty: there is none.
+std::string CameraPath(const SceneFlags& flags);
+
+// Whether the lights are those of the scene: none is given, and it is a glTF file with lights.
+bool TakesLightsOfScene(const SceneFlags& flags);
 
 // The camera for an image of that size. A camera file of another size is scaled; another aspect
 // ratio is an error.

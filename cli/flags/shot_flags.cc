@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "cli/flags/fit_inputs.h"
 #include "io/camera_file.h"
+#include "io/summary_file.h"
 #include "jobs/fit_comparison.h"
 
 namespace lightfit::cli {
@@ -44,6 +45,16 @@ void DeclareModes(CLI::App* app, ShotFlags* flags) {
                 "A matrix is kept from frame to frame while it is good enough")
       ->group(group);
   app->add_flag("--per-shot", flags->per_shot, "One matrix per light for all frames")->group(group);
+}
+
+// The published algorithm has a per-frame form, and a tracked one in its rule of when to keep an
+// axis. It goes through samples, of which a sum over the shot has none.
+void CheckModes(const ShotFlags& flags) {
+  if (!flags.fit.as_published || !flags.per_shot) return;
+  throw CLI::ValidationError(
+      "--as-published",
+      "does not go with --per-shot: the published algorithm goes through the "
+      "samples of one frame; --search line runs on those of all");
 }
 
 void DeclareTracker(CLI::App* app, ShotFlags* flags) {
@@ -89,7 +100,9 @@ void DeclareOutput(CLI::App* app, ShotFlags* flags) {
       ->type_name("COUNT")
       ->check(CLI::Range(1, 1024))
       ->group(group);
-  app->add_flag("--quiet", flags->fit.quiet, "No table and no progress; errors and warnings only")
+  DeclareLegendFlag(app, group, &flags->fit.legend);
+  app->add_flag(
+         "-q,--quiet", flags->fit.quiet, "No table and no progress; errors and warnings only")
       ->group(group);
 }
 
@@ -111,7 +124,7 @@ void DeclareShotFlags(CLI::App* app, ShotFlags* flags) {
       ->required()
       ->type_name("FOLDER|LIST|READBACK.exr");
   DeclareLightFlags(app, &flags->fit.lights, input);
-  DeclareOnlyFlag(app, input, &flags->fit);
+  DeclareOnlyFlag(app, input, &flags->fit.only);
   DeclareReadbackFlags(app, input, &flags->fit);
   DeclareCameraFlags(
       app, "Camera; --frame is that of the first read-back, one camera is for all", &flags->fit);
@@ -120,7 +133,8 @@ void DeclareShotFlags(CLI::App* app, ShotFlags* flags) {
   DeclareMethodFlags(app, &flags->fit.options);
   app->add_flag("--as-published",
                 flags->fit.as_published,
-                "Chong and Gortler's Algorithm 1 and their rule of when to keep an axis")
+                "Chong and Gortler's Algorithm 1 and their rule of when to keep an axis: per frame "
+                "and tracked")
       ->excludes(app->get_option("--search"))
       ->excludes(app->get_option("--affine"))
       ->excludes(app->get_option("--metric"))
@@ -139,7 +153,17 @@ void DeclareShotFlags(CLI::App* app, ShotFlags* flags) {
       ->group("Per shot");
   DeclareOutput(app, flags);
   app->footer(kExamples);
-  app->callback([app, flags] { CheckPlanFlags(*app, flags->fit.map, &flags->fit.plan); });
+  app->callback([app, flags] {
+    CheckPlanFlags(*app, flags->fit.map, &flags->fit.plan);
+    CheckModes(*flags);
+    for (const std::string& input : flags->inputs) {
+      if (!IsSummaryFile(input)) continue;
+      throw CLI::ValidationError(
+          input,
+          "is a summary, and has no frames of its own: lightfit fit --summary fits one map to all "
+          "of them");
+    }
+  });
 }
 
 TrackerOptions TrackerOptionsOf(const ShotFlags& flags) {
@@ -174,7 +198,8 @@ absl::StatusOr<ShotJob> MakeShotJob(const ShotFlags& flags) {
   job.frames = std::move(list->frames);
   job.lights = *std::move(lights);
   const bool all = !flags.per_frame && !flags.tracked && !flags.per_shot;
-  job.modes = {all || flags.per_frame, all || flags.tracked, all || flags.per_shot};
+  const bool sums_up = all && !flags.fit.as_published;  // see CheckModes()
+  job.modes = {all || flags.per_frame, all || flags.tracked, sums_up || flags.per_shot};
   job.map = flags.fit.map;
   job.clip = flags.fit.clip;
   job.tracker = TrackerOptionsOf(flags);

@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 
 #include "absl/strings/str_cat.h"
+#include "cli/command_line/standard_streams.h"
+#include "cli/flags/choice_option.h"
 
 namespace lightfit::cli {
 namespace {
@@ -12,7 +14,7 @@ constexpr char kExamples[] =
     "  lightfit tune sponza.glb --camera 3.5,1.7,-4.2:-9,2.2,-4.4:55 --light sun=sun:1,-3,0.5 \\\n"
     "      --map 2048x2048 --screen 1920x1080 --json sun.json\n"
     "  lightfit tune generate:kind=room,seed=5 --camera 2.3,1.6,3.3:-1.2,0.7,-1.5:65 \\\n"
-    "      --light sun=sun:1,-0.6,-0.25 --evaluations 2000 --json room.json\n"
+    "      --light sun=sun:1,-0.6,-0.25 --map 400x400 --evaluations 2000 --json room.json\n"
     "\n"
     "Starts from the fit, moves the map in all its eight degrees of freedom, and counts the wrong\n"
     "pixels of each move by ray casting: minutes for a light, for shots that are rendered for "
@@ -24,7 +26,9 @@ constexpr char kExamples[] =
 
 std::string TuneFlags::JournalPath() const {
   if (!journal_path.empty()) return journal_path;
-  return json_path.empty() ? "" : absl::StrCat(json_path, ".journal");
+  // A stream has nothing beside it.
+  const bool has_file = !json_path.empty() && WithStreamNames(json_path) == json_path;
+  return has_file ? absl::StrCat(json_path, ".journal") : "";
 }
 
 void DeclareTuneFlags(CLI::App* app, TuneFlags* flags) {
@@ -38,14 +42,12 @@ void DeclareTuneFlags(CLI::App* app, TuneFlags* flags) {
       ->type_name("N")
       ->check(CLI::Range(1, 10'000'000))
       ->group(group);
-  app->add_option_function<std::string>(
-         "--bias",
-         [flags](const std::string& text) {
-           flags->bias = text == "practical" ? Bias::kPractical : Bias::kIdeal;
-         },
-         "Whose wrong pixels are to be few: of sampling alone, or with a renderer's bias [ideal]")
-      ->check(CLI::IsMember({"ideal", "practical"}))
-      ->type_name("ideal|practical")
+  AddChoice(
+      app,
+      "--bias",
+      BiasWords(),
+      &flags->bias,
+      "Whose wrong pixels are to be few: of sampling alone, or with a renderer's bias [ideal]")
       ->group(group);
   app->add_option("--bias-share",
                   flags->compare.judge.constant_share,
@@ -66,7 +68,8 @@ void DeclareTuneFlags(CLI::App* app, TuneFlags* flags) {
                   "FILE.journal]")
       ->type_name("FILE")
       ->group(output);
-  app->add_flag("--quiet", flags->quiet, "No table and no progress; errors and warnings only")
+  DeclareLegendFlag(app, output, &flags->compare.legend);
+  app->add_flag("-q,--quiet", flags->quiet, "No table and no progress; errors and warnings only")
       ->group(output);
   app->footer(kExamples);
 }

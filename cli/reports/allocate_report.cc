@@ -10,20 +10,21 @@
 #include "base/table.h"
 #include "cli/flags/allocate_flags.h"
 #include "cli/reports/fit_report.h"
+#include "cli/reports/legend.h"
 
 namespace lightfit::cli {
 namespace {
 
 constexpr char kLegend[] =
-    "\nFootprint: how far one texel reaches on the screen at the shadow edges, in pixels of the "
+    "Footprint: how far one texel reaches on the screen at the shadow edges, in pixels of the "
     "final\nimage. Wrong: shadow pixels that will be wrong, foretold, of all pixels of the "
     "image.\n";
 constexpr char kSummaryRmsLegend[] =
-    "\nFootprint: how far one texel reaches on the screen at the shadow edges, in read-back "
+    "Footprint: how far one texel reaches on the screen at the shadow edges, in read-back "
     "pixels.\nIts percentiles and wrong pixels need a read-back: lightfit allocate "
     "READBACK.exr.\n";
 constexpr char kSummaryLegend[] =
-    "\nFootprints and wrong pixels need a read-back: lightfit allocate READBACK.exr.\n";
+    "Footprints and wrong pixels need a read-back: lightfit allocate READBACK.exr.\n";
 constexpr char kBudgetLegend[] =
     "Energy: what the split makes least, summed over the lights; beside it that of square maps "
     "of\nequal shares. Below 1 is better; a light that needs less gives way to those that need "
@@ -137,9 +138,12 @@ const char* Legend(const FitOptions& options) {
 
 }  // namespace
 
+std::string AllocationLegend() { return absl::StrCat(kLegend, kBudgetLegend); }
+
 std::string AllocationText(const AllocationReport& report,
                            const std::string& source,
-                           double image_scale) {
+                           double image_scale,
+                           bool has_legend) {
   const bool has_budget = report.budget_texels.has_value();
   const int64_t texels = report.Texels();
   const double square = std::floor(std::sqrt(static_cast<double>(texels)));
@@ -153,16 +157,17 @@ std::string AllocationText(const AllocationReport& report,
                             texels,
                             square,
                             square);
-  return absl::StrCat(source,
-                      "\n",
-                      goal,
-                      "\nFinal: ",
-                      MethodText(report.fit.options),
-                      "\n\n",
-                      AllocationTable(report, image_scale).Text(),
-                      has_budget ? TotalText(report) : GuaranteeText(report),
-                      Legend(report.fit.options),
-                      BudgetLegend(report));
+  return absl::StrCat(
+      source,
+      "\n",
+      goal,
+      "\nFinal: ",
+      MethodText(report.fit.options),
+      "\n\n",
+      AllocationTable(report, image_scale).Text(),
+      has_budget ? TotalText(report) : GuaranteeText(report),
+      LegendOrHint(
+          "allocate", has_legend, absl::StrCat(Legend(report.fit.options), BudgetLegend(report))));
 }
 
 }  // namespace lightfit::cli

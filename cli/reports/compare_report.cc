@@ -7,26 +7,26 @@
 #include "absl/strings/str_format.h"
 #include "base/number.h"
 #include "base/table.h"
+#include "cli/reports/legend.h"
 
 namespace lightfit::cli {
 namespace {
 
 constexpr char kPixelLegend[] =
-    "\nWrong pixels: where the shadow map says other than the truth. Ideal bias: sampling error "
+    "Wrong pixels: where the shadow map says other than the truth. Ideal bias: sampling error "
     "alone;\n"
     "practical: with the bias of a renderer. x lightfit: how many times as many as lightfit.\n"
     "Outside: wrong pixels that lie outside the map.\n";
 constexpr char kPhaseLegend[] =
-    "Counts are means of %d phases: of the map moved by parts of a texel, as one of them depends "
-    "on "
-    "where\n"
-    "single texels fall.\n";
+    "Means of phases: of the map moved by parts of a texel, as one of them depends on where "
+    "single\n"
+    "texels fall.\n";
+constexpr char kBorderNote[] =
+    "Border: what look-ups outside the map must find; the matrix is of no use with the other.\n";
 constexpr char kBorderLegend[] =
-    "Border: what look-ups outside the map find, light (lit) or shadow (dark). Matrices are of no "
-    "use\n"
-    "with the other. Where lightfit's is dark, energy and footprints are over the edges that such "
-    "a map\n"
-    "serves, of every method.\n";
+    "Where lightfit's border is dark, energy and footprints are over the edges that such a map "
+    "serves,\n"
+    "of every method.\n";
 constexpr char kDarkLegend[] = "Dark: lights counted whose maps have a dark border.\n";
 constexpr char kFigureLegend[] =
     "Foretold: wrong pixels that the read-back alone lets expect, of all pixels of the image.\n"
@@ -136,8 +136,8 @@ std::string LightText(const CompareHeading& heading, const LightComparison& ligh
   table.AddColumn("foretold", "% wrong");
   table.AddColumn("energy", "sum");
   table.AddColumn("energy", "x lightfit");
-  table.AddColumn("footprint", "rms");
-  table.AddColumn("footprint", "worst");
+  table.AddColumn("footprint, px", "rms");
+  table.AddColumn("footprint, px", "worst");
   if (has_crawl) AddCrawlColumns(has_truth, &table);
   Notes notes;
   for (const ComparedRow& row : light.rows) {
@@ -238,9 +238,22 @@ std::string MapText(MapSize map) {
   return absl::StrFormat("map %d x %d texels", map.width, map.height);
 }
 
+std::string CompareLegend() {
+  return absl::StrCat(kPixelLegend,
+                      kPhaseLegend,
+                      kBorderLegend,
+                      kFigureLegend,
+                      kPlanLegend,
+                      kCrawlLegend,
+                      kFlipLegend,
+                      kTotalLegend,
+                      kDarkLegend);
+}
+
 std::string CompareReportText(const CompareHeading& heading,
                               absl::Span<const LightComparison> lights,
-                              bool per_light) {
+                              bool per_light,
+                              bool has_legend) {
   const bool has_truth = HasTruth(heading);
   const bool is_mean = has_truth && heading.phases > 1;
   std::string text = absl::StrCat(heading.source, ": ");
@@ -265,15 +278,21 @@ std::string CompareReportText(const CompareHeading& heading,
     }
   }
   if (totals) absl::StrAppend(&text, "\n", TotalsText(heading, lights));
-  if (has_truth)
-    absl::StrAppend(&text, kPixelLegend);
-  else
-    absl::StrAppend(&text, "\nA read-back alone has no truth to count wrong pixels by.\n");
-  if (is_mean) absl::StrAppendFormat(&text, kPhaseLegend, heading.phases);
-  if (has_border) absl::StrAppend(&text, kBorderLegend);
-  absl::StrAppend(&text, kFigureLegend, heading.has_plans ? kPlanLegend : "");
-  if (has_crawl) absl::StrAppend(&text, kCrawlLegend, has_truth ? kFlipLegend : "");
-  if (totals) absl::StrAppend(&text, kTotalLegend, has_border ? kDarkLegend : "");
+  absl::StrAppend(&text,
+                  LegendOrHint("compare",
+                               has_legend,
+                               absl::StrCat(has_truth ? kPixelLegend : "",
+                                            is_mean ? kPhaseLegend : "",
+                                            has_border ? kBorderLegend : "",
+                                            kFigureLegend,
+                                            heading.has_plans ? kPlanLegend : "",
+                                            has_crawl ? kCrawlLegend : "",
+                                            has_crawl && has_truth ? kFlipLegend : "",
+                                            totals ? kTotalLegend : "",
+                                            totals && has_border ? kDarkLegend : "")));
+  if (!has_truth)
+    absl::StrAppend(&text, "A read-back alone has no truth to count wrong pixels by.\n");
+  if (has_border) absl::StrAppend(&text, kBorderNote);
   return text;
 }
 

@@ -29,9 +29,13 @@ struct CompareHeading {
   std::string next;        // the frame that crawl is measured to; empty: none is
 };
 
+// What the columns mean, whichever there are.
+std::string CompareLegend();
+
 // One light: a table of it. More: one table over all lights, after one of each if `per_light`.
 std::string CompareReportText(const CompareHeading& heading,
                               absl::Span<const LightComparison> lights,
-                              bool per_light);
+                              bool per_light,
+                              bool has_legend = false);
 
 }  // namespace lightfit::cli

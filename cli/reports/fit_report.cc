@@ -10,6 +10,7 @@
 #include "base/table.h"
 #include "cli/flags/choices.h"
 #include "cli/reports/fit_cells.h"
+#include "cli/reports/legend.h"
 #include "cli/reports/plan_report.h"
 #include "optimizer/figures/foretell.h"
 
@@ -17,25 +18,28 @@ namespace lightfit::cli {
 namespace {
 
 constexpr char kLegend[] =
-    "\nWrong: shadow pixels that will be wrong, foretold, of all pixels of the image, with the\n"
+    "Wrong: shadow pixels that will be wrong, foretold, of all pixels of the image, with the\n"
     "nearest texel and no fault of the bias. Fewer than: how many times fewer the final map has;\n"
     "\"same\": about as many, as far as can be foretold.\n"
     "Footprint: how far one texel reaches on the screen at the shadow edges, in read-back pixels;\n"
     "below 1 is finer. Figures are over the shadow-edge pixels that a fit takes by default, "
     "whatever\n"
-    "this one took; the table below counts those it took. Time: the final fit of that light.\n"
+    "this one took; the second table counts those it took. Time: the final fit of that light.\n"
     "Focused: the usual map around all that is visible. Published: Chong and Gortler's Algorithm "
     "1.\n";
 
-// What stands below the table where a light has it.
-constexpr char kBorderLegend[] =
-    "Border: what look-ups outside the final map must find; the matrix is of no use with the "
-    "other.\n"
-    "Figures of a light with a dark border are over the edges that such a map serves.\n";
-
-constexpr char kPlanBorderLegend[] =
-    "Border: what look-ups outside of all maps must find; the maps are of no use with the other.\n"
+constexpr char kDarkLegend[] =
     "Figures of a light with a dark border are over the edges that such maps serve.\n";
+
+// Whoever misses these two gets wrong shadows: they stand below the table of a light that has it,
+// whether or not a legend is asked for.
+constexpr char kBorderNote[] =
+    "Border: what look-ups outside the final map must find; the matrix is of no use with the "
+    "other.\n";
+
+constexpr char kPlanBorderNote[] =
+    "Border: what look-ups outside of all maps must find; the maps are of no use with the "
+    "other.\n";
 
 // How far off the forecasts may be, and what would make them better.
 std::string ForecastText(const Readback& readback, const std::vector<FitComparison>& comparisons) {
@@ -63,10 +67,10 @@ Table FigureTable(const std::vector<FitComparison>& comparisons) {
   table.AddColumn("wrong, % of the image", "final");
   table.AddColumn("fewer than", "focused");
   table.AddColumn("fewer than", "published");
-  table.AddColumn("rms footprint", "focused");
-  table.AddColumn("rms footprint", "final");
-  table.AddColumn("99 % footprint", "focused");
-  table.AddColumn("99 % footprint", "final");
+  table.AddColumn("rms footprint, px", "focused");
+  table.AddColumn("rms footprint, px", "final");
+  table.AddColumn("99 % footprint, px", "focused");
+  table.AddColumn("99 % footprint, px", "final");
   table.AddColumn("time", "ms");
   for (const FitComparison& comparison : comparisons) {
     if (!comparison.final.ok()) {
@@ -172,11 +176,14 @@ std::string ShortMethodText(const FitOptions& options) {
       WordFor(SearchWords(), options.search), " search, ", WordFor(MetricWords(), options.metric));
 }
 
+std::string FitLegend() { return absl::StrCat(kLegend, kDarkLegend); }
+
 std::string FitReportText(const std::string& source,
                           const Readback& readback,
                           MapSize map,
                           const FitOptions& options,
-                          const std::vector<FitComparison>& comparisons) {
+                          const std::vector<FitComparison>& comparisons,
+                          bool has_legend) {
   return absl::StrCat(absl::StrFormat("%s: %d x %d pixels; map %d x %d texels\nFinal: %s\n\n",
                                       source,
                                       readback.width(),
@@ -187,8 +194,8 @@ std::string FitReportText(const std::string& source,
                       FigureTable(comparisons).Text(),
                       "\n",
                       SampleTable(comparisons, kNoMatrix).Text(),
-                      kLegend,
-                      HasDarkBorder(comparisons) ? kBorderLegend : "",
+                      LegendOrHint("fit", has_legend, FitLegend()),
+                      HasDarkBorder(comparisons) ? kBorderNote : "",
                       ForecastText(readback, comparisons),
                       MeasuredText(readback, comparisons));
 }
@@ -196,20 +203,25 @@ std::string FitReportText(const std::string& source,
 std::string PlanReportText(const std::string& source,
                            const Readback& readback,
                            const PlanOptions& options,
-                           const std::vector<FitComparison>& comparisons) {
-  return absl::StrCat(absl::StrFormat("%s: %d x %d pixels; %s\nPlans: %s\n\n",
+                           const std::vector<FitComparison>& comparisons,
+                           bool has_legend) {
+  const MapSize one = OneMapSize(options);
+  return absl::StrCat(absl::StrFormat("%s: %d x %d pixels; %s\nPlans: %s\nPublished and one map: "
+                                      "both %d x %d texels\n\n",
                                       source,
                                       readback.width(),
                                       readback.height(),
                                       PlanSizeText(options),
-                                      PlanMethodText(options)),
+                                      PlanMethodText(options),
+                                      one.width,
+                                      one.height),
                       PlanTable(comparisons).Text(),
                       "\n",
                       PlanMapTable(comparisons).Text(),
                       "\n",
                       SampleTable(comparisons, kNoPlan).Text(),
-                      PlanLegend(options),
-                      HasDarkBorder(comparisons) ? kPlanBorderLegend : "",
+                      LegendOrHint("fit", has_legend, PlanLegend()),
+                      HasDarkBorder(comparisons) ? kPlanBorderNote : "",
                       ForecastText(readback, comparisons),
                       MeasuredText(readback, comparisons));
 }

@@ -69,8 +69,8 @@ Table PlanMapTable(const std::vector<FitComparison>& comparisons) {
   table.AddColumn("texels", "height");
   table.AddColumn("shadow-edge", "pixels");
   table.AddColumn("", "energy");
-  table.AddColumn("footprint", "rms");
-  table.AddColumn("footprint", "99 %");
+  table.AddColumn("footprint, px", "rms");
+  table.AddColumn("footprint, px", "99 %");
   for (const FitComparison& comparison : comparisons) {
     if (!comparison.ok()) continue;
     const LightPlan& plan = (*comparison.plan)->plan;
@@ -89,23 +89,21 @@ Table PlanMapTable(const std::vector<FitComparison>& comparisons) {
   return table;
 }
 
-std::string PlanLegend(const PlanOptions& options) {
-  const MapSize one = OneMapSize(options);
-  return absl::StrFormat(
-      "\nPlan: of the maps that hold a pixel it asks the one with the finest texels. One map: our "
-      "single\n"
-      "map; published: Chong and Gortler's Algorithm 1; both %d x %d, the texels that a plan may "
-      "have.\n"
-      "Wrong: shadow pixels that will be wrong, foretold, of all pixels of the image, with the\n"
-      "nearest texel and no fault of the bias. Fewer than: how many times fewer the plan has;\n"
-      "\"same\": about as many, as far as can be foretold.\n"
-      "Energy: the sum of footprints at the shadow edges in the metric of the fit, each in the map "
-      "that\nis asked there; edge pixels outside of all maps, which the border answers, are in "
-      "none.\n"
-      "Footprint: how far one texel reaches on the screen, in read-back pixels; below 1 is finer.\n"
-      "Time: the plan of that light.\n",
-      one.width,
-      one.height);
+std::string PlanLegend() {
+  return "Plan: of the maps that hold a pixel it asks the one with the finest texels. One map: our "
+         "single\n"
+         "map; published: Chong and Gortler's Algorithm 1; both of the texels that a plan may "
+         "have.\n"
+         "Wrong: shadow pixels that will be wrong, foretold, of all pixels of the image, with the\n"
+         "nearest texel and no fault of the bias. Fewer than: how many times fewer the plan has;\n"
+         "\"same\": about as many, as far as can be foretold.\n"
+         "Energy: the sum of footprints at the shadow edges in the metric of the fit, each in the "
+         "map that\nis asked there; edge pixels outside of all maps, which the border answers, are "
+         "in none.\n"
+         "Footprint: how far one texel reaches on the screen, in read-back pixels; below 1 is "
+         "finer.\n"
+         "Time: the plan of that light. Figures of a light with a dark border are over the edges "
+         "that such\nmaps serve.\n";
 }
 
 }  // namespace lightfit::cli

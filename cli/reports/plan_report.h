@@ -23,6 +23,6 @@ Table PlanTable(const std::vector<FitComparison>& comparisons);
 Table PlanMapTable(const std::vector<FitComparison>& comparisons);
 
 // What the two tables mean.
-std::string PlanLegend(const PlanOptions& options);
+std::string PlanLegend();
 
 }  // namespace lightfit::cli

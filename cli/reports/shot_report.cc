@@ -10,6 +10,7 @@
 #include "base/number.h"
 #include "base/table.h"
 #include "cli/reports/fit_report.h"
+#include "cli/reports/legend.h"
 #include "cli/reports/plan_report.h"
 #include "jobs/shot/totals.h"
 
@@ -21,7 +22,7 @@ constexpr char kPlanLegend[] =
     "another map than in the frame before counts as drawn anew.\n";
 
 constexpr char kLegend[] =
-    "\nEnergy: as a multiple of the frame's own best map, geometric mean over the frames. "
+    "Energy: as a multiple of the frame's own best map, geometric mean over the frames. "
     "Updates:\n"
     "frames in which texels move over surfaces, the first among them. Phase drift: how far a\n"
     "surface moves within its texel from one frame to the next, root mean square; 0 stands still,\n"
@@ -183,21 +184,24 @@ std::string GapText(const ShotContext& context, size_t light, const Gap& gap) {
 
 }  // namespace
 
-std::string ShotReportText(const ShotContext& context) {
+std::string ShotLegend() { return absl::StrCat(kLegend, kPlanLegend); }
+
+std::string ShotReportText(const ShotContext& context, bool has_legend) {
   const ShotJob& job = context.job;
-  return absl::StrCat(absl::StrFormat("%s: %d %s; %s\nFit: %s\n",
-                                      job.name,
-                                      job.frames.size(),
-                                      job.frames.size() == 1 ? "frame" : "frames",
-                                      MapsText(job),
-                                      job.plans.has_value() ? PlanMethodText(job.plans->plan)
-                                                            : MethodText(job.fit())),
-                      TrackerText(job),
-                      "\n",
-                      TotalsTable(context).Text(),
-                      kLegend,
-                      job.plans.has_value() ? kPlanLegend : "",
-                      WhereText(context));
+  return absl::StrCat(
+      absl::StrFormat(
+          "%s: %d %s; %s\nFit: %s\n",
+          job.name,
+          job.frames.size(),
+          job.frames.size() == 1 ? "frame" : "frames",
+          MapsText(job),
+          job.plans.has_value() ? PlanMethodText(job.plans->plan) : MethodText(job.fit())),
+      TrackerText(job),
+      "\n",
+      TotalsTable(context).Text(),
+      LegendOrHint(
+          "shot", has_legend, absl::StrCat(kLegend, job.plans.has_value() ? kPlanLegend : "")),
+      WhereText(context));
 }
 
 std::vector<std::string> ShotErrors(const ShotContext& context) {

@@ -10,8 +10,11 @@
 
 namespace lightfit::cli {
 
+// What the columns mean, those of plans too.
+std::string ShotLegend();
+
 // Ends in a newline.
-std::string ShotReportText(const ShotContext& context);
+std::string ShotReportText(const ShotContext& context, bool has_legend = false);
 
 // One line for each frame that could not be read, and for each light without a matrix in some
 // frames of a mode: the frames, and why in the first of them.

@@ -7,6 +7,7 @@
 #include "absl/strings/str_format.h"
 #include "base/number.h"
 #include "base/table.h"
+#include "cli/reports/legend.h"
 #include "jobs/compare/totals.h"
 
 namespace lightfit::cli {
@@ -23,18 +24,33 @@ std::string ShareText(const std::optional<double>& share) {
 
 }  // namespace
 
+std::string TuneLegend() {
+  return absl::StrFormat(
+      "Wrong pixels: where the shadow map says other than the truth; means over %d positions of "
+      "the\nmap's texels, which are what the search minimised. At other phases: over %d positions "
+      "that it\nhas not seen. Limit: the best map that the search found from the fit on; it is "
+      "what "
+      "is written.\nForetold: wrong pixels that the read-back alone lets expect, of all pixels of "
+      "the image.\n",
+      kTunePhases,
+      kCheckPhases);
+}
+
 std::string TuneReportText(const CompareHeading& heading,
                            const TuneOptions& options,
-                           absl::Span<const TunedLight> lights) {
-  std::string text =
-      absl::StrFormat("%s: screen %d x %d pixels, read-back %d x %d pixels; %s\nfit: %s\n\n",
-                      heading.source,
-                      heading.screen_width,
-                      heading.screen_height,
-                      heading.readback_width,
-                      heading.readback_height,
-                      heading.maps,
-                      heading.fit);
+                           absl::Span<const TunedLight> lights,
+                           bool has_legend) {
+  std::string text = absl::StrFormat(
+      "%s: screen %d x %d pixels, read-back %d x %d pixels; %s; %s bias\nfit: "
+      "%s\n\n",
+      heading.source,
+      heading.screen_width,
+      heading.screen_height,
+      heading.readback_width,
+      heading.readback_height,
+      heading.maps,
+      options.bias == Bias::kIdeal ? "ideal" : "practical",
+      heading.fit);
   Table table;
   table.AddColumn("", "light");
   for (const char* group : {"wrong pixels", "at other phases"}) {
@@ -72,17 +88,7 @@ std::string TuneReportText(const CompareHeading& heading,
                           RatioText(totals.fit_check, totals.tuned_check),
                           absl::StrCat(FigureText(totals.mean_check_ratio), "x"));
   }
-  absl::StrAppendFormat(
-      &text,
-      "\nWrong pixels: where the shadow map says other than the truth, %s bias; means over %d "
-      "positions\nof the map's texels, which are what the search minimised. At other phases: over "
-      "%d "
-      "positions that\nit has not seen. Limit: the best map that the search found from the fit on; "
-      "it is what is written.\nForetold: wrong pixels that the read-back alone lets expect, of all "
-      "pixels of the image.\n",
-      options.bias == Bias::kIdeal ? "ideal" : "practical",
-      kTunePhases,
-      kCheckPhases);
+  absl::StrAppend(&text, LegendOrHint("tune", has_legend, TuneLegend()));
   return text;
 }
 

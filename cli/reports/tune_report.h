@@ -11,9 +11,13 @@
 
 namespace lightfit::cli {
 
-// A table with a line for each light, the totals, and what the numbers mean. Ends in a newline.
+// What the columns mean.
+std::string TuneLegend();
+
+// A table with a line for each light, and the totals. Ends in a newline.
 std::string TuneReportText(const CompareHeading& heading,
                            const TuneOptions& options,
-                           absl::Span<const TunedLight> lights);
+                           absl::Span<const TunedLight> lights,
+                           bool has_legend = false);
 
 }  // namespace lightfit::cli

@@ -7,7 +7,7 @@ Layout: https://openexr.com/en/latest/OpenEXRFileLayout.html
 from __future__ import annotations
 
 import struct
-from typing import Dict, Tuple
+from typing import Dict, Optional, Tuple
 
 import numpy
 
@@ -45,10 +45,11 @@ def write_exr(
     channels: Dict[str, numpy.ndarray],
     matrices: Dict[str, numpy.ndarray],
     pixel_aspect: float = 1.0,
+    strings: Optional[Dict[str, str]] = None,
 ) -> None:
     """channels: (height, width) float16 or float32 each. matrices: header attributes, (4, 4) for
     column vectors; stored for row vectors in single precision, as the OpenEXR standard has them.
-    pixel_aspect: width over height of a pixel."""
+    pixel_aspect: width over height of a pixel. strings: header attributes."""
     names = sorted(channels, key=str.encode)
     height, width = channels[names[0]].shape
     window = struct.pack("<4i", 0, 0, width - 1, height - 1)
@@ -68,6 +69,8 @@ def write_exr(
     }
     for name, matrix in matrices.items():
         attributes[name] = ("m44f", numpy.ascontiguousarray(matrix.T, "<f4").tobytes())
+    for name, text in (strings or {}).items():
+        attributes[name] = ("string", text.encode())
     header = struct.pack("<2i", _MAGIC, 2 | _LONG_NAMES) + b"".join(
         name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(value)) + value
         for name, (kind, value) in attributes.items()

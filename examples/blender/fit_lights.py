@@ -11,11 +11,13 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import os
 import sys
-from typing import Any, List, Tuple
+from typing import Any, List, Optional, Tuple
 
 import bpy
+from mathutils import Vector
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
@@ -39,6 +41,7 @@ class FitLightsError(Exception):
 
 def main() -> None:
     flags = parse_flags()
+    check_outputs(flags)  # before the renders, as the server below
     lightfit = import_lightfit()
     if flags.demo:
         demo_scene.make_demo_scene()
@@ -189,28 +192,115 @@ def default_size(scene: bpy.types.Scene) -> Tuple[int, int]:
     return DEFAULT_WIDTH, max(1, round(DEFAULT_WIDTH * render.resolution_y / render.resolution_x))
 
 
+def check_outputs(flags: argparse.Namespace) -> None:
+    """That --json, --save and --keep-readback can be written: a render may take a while."""
+    for flag, path in (("--json", flags.json), ("--save", flags.save)):
+        if path:
+            check_writable(flag, os.path.abspath(path))
+    if flags.keep_readback:
+        folder = os.path.abspath(flags.keep_readback)
+        try:
+            os.makedirs(folder, exist_ok=True)
+        except OSError as error:
+            raise FitLightsError(f"--keep-readback {folder}: {error.strerror}") from None
+        check_writable("--keep-readback", os.path.join(folder, "frame.exr"))
+
+
+def check_writable(flag: str, path: str) -> None:
+    folder = os.path.dirname(path)
+    if os.path.isdir(path):
+        raise FitLightsError(f"{flag} {path}: is a folder, want a file")
+    if not os.path.isdir(folder):
+        raise FitLightsError(f"{flag} {path}: there is no folder {folder}")
+    # A file that is there is what counts, else whether its folder takes one.
+    if not os.access(path if os.path.exists(path) else folder, os.W_OK):
+        raise FitLightsError(f"{flag} {path}: cannot be written: no permission")
+
+
 def warn(
     lights: List[bpy.types.Object], scene: bpy.types.Scene, width: int, height: int
 ) -> None:
     for light in lights:
-        words = {
-            "SPOT": "is a spot, fitted as a point light: its map covers shadows outside the cone, "
-            "too",
-            "AREA": "is an area light, fitted as a point light in its middle: shadows are hard",
-        }.get(light.data.type)
-        if words:
+        for words in cautions(light):
             print(f'fit_lights: warning: light "{light.name}": {words}')
-        if light.library:
-            print(
-                f'fit_lights: warning: light "{light.name}": is linked from '
-                f"{light.library.filepath}: its properties are not saved, take them from --json"
-            )
+    for name, collection in linked_lights(scene):
+        print(
+            f'fit_lights: warning: light "{name}": is in the linked collection '
+            f'"{collection}" and not fitted: make it local (Object > Relations > Make Instances '
+            "Real)"
+        )
     render = scene.render
     if abs(width * render.resolution_y / (height * render.resolution_x) - 1) > 0.02:
         print(
             f"fit_lights: warning: --size {width}x{height} has another shape than the scene's "
             f"{render.resolution_x}x{render.resolution_y}: it does not show the same"
         )
+
+
+# Beyond these a penumbra is wider than a shadow map is worth: the real sun has half a degree.
+HARD_SUN_DEG = 1.0
+HARD_POINT_SHARE = 0.02  # radius, of the distance to the nearest thing that is rendered
+
+
+def cautions(light: bpy.types.Object) -> List[str]:
+    """What of the light its map does not have."""
+    found = []
+    data = light.data
+    if data.type == "SPOT":
+        found.append(
+            "is a spot, fitted as a point light: its map covers shadows outside the cone, too"
+        )
+    if data.type == "AREA":
+        found.append("is an area light, fitted as a point light in its middle: shadows are hard")
+    if data.type == "SUN" and math.degrees(data.angle) > HARD_SUN_DEG:
+        found.append(
+            f"is a soft sun of {math.degrees(data.angle):.3g} degrees, fitted as a hard one: its "
+            "map is right where shadows touch what casts them"
+        )
+    if data.type in ("POINT", "SPOT") and data.shadow_soft_size > 0:
+        distance = nearest_distance(light)
+        if distance is not None and data.shadow_soft_size > HARD_POINT_SHARE * distance:
+            found.append(
+                f"has a radius of {data.shadow_soft_size:.3g}, {distance:.3g} from the nearest "
+                "thing, fitted as a point: its shadows are softer than its map"
+            )
+    if light.library:
+        found.append(
+            f"is linked from {light.library.filepath}: its properties are not saved, take them "
+            "from --json"
+        )
+    return found
+
+
+def nearest_distance(light: bpy.types.Object) -> Optional[float]:
+    """To the boxes around what renders, scene units; None where there is nothing or it is inside
+    of all."""
+    place = light.matrix_world.translation
+    nearest = None
+    for thing in bpy.context.scene.objects:
+        if thing.type not in ("MESH", "CURVE", "SURFACE", "FONT", "META") or thing.hide_render:
+            continue
+        corners = [thing.matrix_world @ Vector(corner) for corner in thing.bound_box]
+        low = [min(corner[axis] for corner in corners) for axis in range(3)]
+        high = [max(corner[axis] for corner in corners) for axis in range(3)]
+        beyond = [max(low[axis] - place[axis], 0.0, place[axis] - high[axis]) for axis in range(3)]
+        distance = math.sqrt(sum(part * part for part in beyond))
+        if distance > 0.0 and (nearest is None or distance < nearest):
+            nearest = distance
+    return nearest
+
+
+def linked_lights(scene: bpy.types.Scene) -> List[Tuple[str, str]]:
+    """Lights that render inside of collection instances: (light, collection)."""
+    found = []
+    for thing in scene.objects:
+        collection = thing.instance_collection if thing.instance_type == "COLLECTION" else None
+        if collection is None or thing.hide_render:
+            continue
+        for inside in collection.all_objects:
+            if inside.type == "LIGHT" and not inside.hide_render:
+                found.append((inside.name, collection.name))
+    return sorted(set(found))
 
 
 def check_server(lightfit: Any, client: Any, address: str) -> None:

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import json
 import math
 import os
 import tempfile
@@ -57,8 +58,8 @@ class Readback:
         }
 
     def write_exr(self, path: str) -> None:
-        """Depth, shadows, facing and camera, for `lightfit fit FILE`. The camera in the header has single
-        precision only; that of scene_file() is the exact one."""
+        """Depth, shadows, facing, lights and camera, for `lightfit fit FILE`. The camera in the
+        header has single precision only; that of scene_file() is the exact one."""
         channels = {"Z": self.depth}
         for bit, light in enumerate(self.lights):
             for kind, words in (("shadow", self.shadow), ("facing", self.facing)):
@@ -72,7 +73,8 @@ class Readback:
             "worldToCamera": numpy.diag([1.0, 1.0, -1.0, 1.0]) @ camera_from_world,
             "worldToNDC": ndc_from_clip @ self.projection @ camera_from_world,
         }
-        write_exr(path, channels, matrices, self.pixel_aspect)
+        strings = {"lightfit.lights": json.dumps({"lights": self.lights})}
+        write_exr(path, channels, matrices, self.pixel_aspect, strings)
 
 
 def render_readback(

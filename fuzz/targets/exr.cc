@@ -51,6 +51,9 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     fuzz::PromiseReadback(ReadReadbackExr(file.path(), lights, options), lights.size());
     options.shadow_bits_channel = "shadow";
     fuzz::PromiseReadback(ReadReadbackExr(file.path(), lights, options), lights.size());
+    options.shadow_bits_channel.clear();
+    options.view = "left";
+    fuzz::PromiseReadback(ReadReadbackExr(file.path(), lights, options), lights.size());
   }
   const absl::StatusOr<Camera> camera = ReadCameraExr(file.path());
   fuzz::PromiseOkOrError(camera.status());

@@ -1,6 +1,6 @@
 // Scenes in Stanford's polygon format, the only scenes that no foreign library reads.
 #include "fuzz/promises.h"
-#include "render/ply_file.h"
+#include "scenes/ply_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace lightfit;  // NOLINT(google-build-using-namespace)

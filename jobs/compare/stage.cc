@@ -50,7 +50,7 @@ VisibleSurfaces SurfacesOf(const SurfaceImage& image) {
 // Positions and normals where the surface continues to all four neighbours.
 VisibleSurfaces SurfacesOf(const Readback& readback) {
   const SampleOptions options;
-  const AffineDepth affine_depth(readback.camera, readback.depth_kind);
+  const AffineDepth affine_depth = AffineDepthOf(readback);
   const Eigen::Matrix4d world_from_screen = readback.camera.WorldFromScreen();
   const Eigen::Matrix4d screen_from_world = readback.camera.ScreenFromWorld();
   VisibleSurfaces surfaces;

@@ -1,5 +1,7 @@
 #include "jobs/shot/context.h"
 
+#include <utility>
+
 #include "base/parallel.h"
 #include "base/text_file.h"
 #include "io/summary_file.h"
@@ -90,6 +92,15 @@ void ShotContext::Step(const std::string& what) {
 void ShotContext::Skip(int num_steps) {
   const std::lock_guard<std::mutex> lock(mutex_);
   for (int i = 0; i < num_steps && progress_ != nullptr; ++i) progress_->Advance();
+}
+
+void ShotContext::AddNotes(size_t frame, const ReadbackFile& file) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  readback_notes_.Add(frame, job.frames[frame].path, file);
+}
+
+void ShotContext::NoteReadbacks() {
+  for (std::string& warning : readback_notes_.Warnings()) notes.push_back(std::move(warning));
 }
 
 void ShotContext::Fail(const absl::Status& status) {

@@ -17,6 +17,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "base/progress.h"
+#include "io/readback_notes.h"
 #include "jobs/shot/job.h"
 #include "jobs/shot/key.h"
 #include "jobs/shot/result.h"
@@ -68,6 +69,10 @@ class ShotContext {
   void Skip(int num_steps);
   void EndProgress() { progress_.reset(); }
 
+  // What is to be said of a frame's read-back; and of all that were read, in `notes`.
+  void AddNotes(size_t frame, const ReadbackFile& file);
+  void NoteReadbacks();
+
   // Remembers the first status that is not ok; all work should end.
   void Fail(const absl::Status& status);
   absl::Status status() const;
@@ -84,6 +89,7 @@ class ShotContext {
 
   mutable std::mutex mutex_;
   absl::Status status_;
+  ReadbackNotes readback_notes_;
   std::unique_ptr<Progress> progress_;
 };
 

@@ -52,7 +52,7 @@ std::string JsonOrError(const google::protobuf::Message& message) {
 }
 
 // Raised whenever the same options may find other channels in a file.
-constexpr int kReadingRevision = 2;
+constexpr int kReadingRevision = 3;
 
 // How a file is to be understood.
 std::string ReadingText(const ReadbackExrOptions& exr) {
@@ -63,9 +63,10 @@ std::string ReadingText(const ReadbackExrOptions& exr) {
                                               absl::string_view(exr.mapped_channel_format),
                                               absl::string_view(exr.view)},
                                              "\n");
-  return absl::StrFormat("%d %d\n%s\n%s\n%.17g %.17g %.17g\n%s",
+  return absl::StrFormat("%d %d %s\n%s\n%s\n%.17g %.17g %.17g\n%s",
                          kReadingRevision,
                          static_cast<int>(exr.depth_kind),
+                         exr.background.has_value() ? absl::StrCat(*exr.background) : "",
                          channels,
                          CameraConventionWords(exr.camera_exr.convention),
                          exr.camera_exr.near,

@@ -98,6 +98,7 @@ class FramePipeline {
     if (MustReadFrame(context_, frame)) {
       work->file = ReadFrame(job_.frames[frame], job_.lights);
       context_.frame_status[frame] = work->file.status();
+      if (work->file.ok()) context_.AddNotes(frame, *work->file);
       work->views.emplace(job_, work->file);
     }
     if (IsMissing(ShotMode::kPerFrame, frame)) {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "io/readback_notes.h"
 #include "wire/crawl_proto.h"
 #include "wire/plan_shot_proto.h"
 #include "wire/shot_proto.h"
@@ -125,7 +126,7 @@ v1::FitResult ShotResultToProto(const ShotJob& job,
   if (readback == nullptr) {
     result.mutable_readback()->clear_camera();
   } else {
-    *result.mutable_readback()->mutable_origin() = OriginToProto(readback->origin);
+    PutNotes(*readback, result.mutable_readback());
   }
   for (size_t light = 0; light < fits.size(); ++light) {
     if (!fits[light].ok()) continue;

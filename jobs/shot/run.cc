@@ -68,6 +68,7 @@ absl::Status RunShot(ShotContext* context) {
   const bool has_whole = job.Has(ShotMode::kPerShot);
   context->BeginProgress(NumFrameSteps(*context) + (has_whole ? NumWholeShotSteps(*context) : 0));
   const absl::StatusOr<SummarySet> sum = FitFrames(context);
+  context->NoteReadbacks();
   if (sum.ok() && has_whole) {
     if (context->MakesSummaries() && !context->HasShot()) NoteMissing(*sum, context);
     context->Fail(FitWholeShot(*sum, context));

@@ -50,6 +50,9 @@ std::string TuneKey(const CompareStage& stage,
   absl::StrAppend(&text, JsonOrError(CameraToProto(stage.screen.camera)));
   absl::StrAppend(&text, JsonOrError(FitOptionsToProto(options.fit)));
   for (const Light& light : lights) absl::StrAppend(&text, JsonOrError(LightToProto(light)));
+  if (const Eigen::Vector3d& origin = stage.caster->scene().origin; !origin.isZero(0.0)) {
+    absl::StrAppendFormat(&text, "%a %a %a", origin.x(), origin.y(), origin.z());
+  }
   uLong crc = crc32(0, reinterpret_cast<const Bytef*>(text.data()), static_cast<uInt>(text.size()));
   crc = AddBytes(crc, stage.caster->scene().vertices);
   crc = AddBytes(crc, stage.caster->scene().triangles);

@@ -2,9 +2,10 @@
 //
 // Thirty-six numbers replace the samples: energy and gradient of any map in O(1).
 // In:   Samples and their RayCover.
-// Out:  Summary {tensor, weight, counts, cover}, about a kilobyte; they add,
-// optimizer/energy/summary_total.h.
+// Out:  Summary {tensor, weight, counts, cover}, about a kilobyte.
 //       math.md 4, (6)-(8)
+//
+// Summaries add: optimizer/energy/summary_total.h.
 //
 // Symbols: T tensor, X normalised ray, G = D'D, p axis, [r1 r2 r3] = H^-1.
 #pragma once

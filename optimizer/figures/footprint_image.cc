@@ -61,7 +61,7 @@ absl::StatusOr<std::vector<uint8_t>> SampleImage(const Surfaces& surfaces,
 
 absl::StatusOr<std::vector<Eigen::Vector3d>> ReceiverPositions(const Readback& readback) {
   if (absl::Status status = ValidateReadback(readback); !status.ok()) return status;
-  const AffineDepth affine_depth(readback.camera, readback.depth_kind);
+  const AffineDepth affine_depth = AffineDepthOf(readback);
   const Eigen::Matrix4d world_from_screen = readback.camera.WorldFromScreen();
   std::vector<Eigen::Vector3d> positions;
   for (int y = 0; y < readback.height(); ++y) {

@@ -24,7 +24,7 @@ std::optional<double> OutsideShareOfFineCover(const Readback& readback,
   if (words.empty()) return std::nullopt;
   const uint32_t bit = uint32_t{1} << light.shadow_bit;
   const Readback layer = FineLayer(readback, 0, words);
-  const AffineDepth affine_depth(layer.camera, layer.depth_kind);
+  const AffineDepth affine_depth = AffineDepthOf(layer);
   const Eigen::Matrix4d world_from_screen = layer.camera.WorldFromScreen();
   int64_t num_outside = 0;
   for (int y = 0; y < fine.rows; ++y) {
@@ -74,6 +74,23 @@ absl::StatusOr<double> ForetellWrongShare(const Readback& readback,
   return std::min(*share + outside.value_or(0.0), 1.0);
 }
 
+absl::StatusOr<std::vector<float>> ForetellWrongImage(const Readback& readback,
+                                                      const Light& light,
+                                                      absl::Span<const SizedMatrix> maps,
+                                                      const SampleOptions& options,
+                                                      Border border) {
+  const absl::StatusOr<PixelFootprints> footprints =
+      PixelFootprints::Create(readback, light, maps, options);
+  if (!footprints.ok()) return footprints.status();
+  std::vector<float> image(readback.depth.size(), 0.0F);
+  const absl::Status status =
+      readback.KnowsFacing(light.shadow_bit)
+          ? ForetellImageByState(readback, light, *footprints, border, absl::MakeSpan(image))
+          : ForetellImageByBits(readback, light, *footprints, border, absl::MakeSpan(image));
+  if (!status.ok()) return status;
+  return image;
+}
+
 double ForecastFactor(const Readback& readback, const Light& light) {
   // Measured at 180x180 over ten scenes: docs/defaults.md.
   return readback.KnowsFacing(light.shadow_bit) ? 1.8 : 2.3;
@@ -81,7 +98,7 @@ double ForecastFactor(const Readback& readback, const Light& light) {
 
 std::optional<double> MeasuredWrongShare(const Readback& readback, const Light& light) {
   if (!readback.KnowsMapped(light.shadow_bit)) return std::nullopt;
-  const AffineDepth affine_depth(readback.camera, readback.depth_kind);
+  const AffineDepth affine_depth = AffineDepthOf(readback);
   const uint32_t bit = uint32_t{1} << light.shadow_bit;
   const bool knows_facing = readback.KnowsFacing(light.shadow_bit);
   int64_t num_wrong = 0;

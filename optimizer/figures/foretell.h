@@ -2,13 +2,14 @@
 //
 // How many shadow pixels a matrix will get wrong, foretold from the read-back alone.
 // In:   Readback, Light, a matrix, the size of its map and its border.
-// Out:  the share of the image's pixels that will be wrong, with nearest texels and an ideal bias;
-//       how far off that may be; what is wrong now, where the read-back says what the drawn map
-//       says.
+// Out:  the share of the image's pixels that will be wrong, with nearest texels and an ideal bias,
+//       and which pixels; how far off that may be; what is wrong now, where the read-back says what
+//       the drawn map says.
 #pragma once
 
 #include <Eigen/Core>
 #include <optional>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
@@ -47,6 +48,17 @@ absl::StatusOr<double> ForetellWrongShare(const Readback& readback,
                                           absl::Span<const SizedMatrix> maps,
                                           const SampleOptions& options = {},
                                           Border border = Border::kLit);
+
+// The same pixel by pixel, row-major, for pictures: how likely each is to be wrong, 0 ... 1. All
+// pixels are looked at, whatever the size, but for the outermost where the read-back knows what
+// faces the light; 0 where there is no surface, and never NaN. What lies outside the maps is
+// counted by the read-back's own pixels: a finer cover, and what is likely to lie there unseen,
+// belong to none of them.
+absl::StatusOr<std::vector<float>> ForetellWrongImage(const Readback& readback,
+                                                      const Light& light,
+                                                      absl::Span<const SizedMatrix> maps,
+                                                      const SampleOptions& options = {},
+                                                      Border border = Border::kLit);
 
 // On two lights of three the measured share is within this factor of the foretold one, either way.
 double ForecastFactor(const Readback& readback, const Light& light);

@@ -68,6 +68,30 @@ class ShadowOfSurface {
   ScratchVector<Facing> facing_;
 };
 
+// How likely pixel (x, y) is to be wrong.
+double WrongAt(const PixelFootprints& footprints,
+               std::optional<Border> border,
+               int x,
+               int y,
+               ShadowOfSurface* shadow) {
+  const std::optional<PixelFootprint> pixel = footprints.At(x, y);
+  if (!pixel.has_value()) return 0.0;
+  const double bit = shadow->Bit(x, y);
+  const Eigen::Vector2d& texel = pixel->texel;
+  const MapSize map = footprints.size(std::max(0, pixel->map));
+  if (pixel->is_behind || texel.x() < 0.0 || texel.y() < 0.0 || texel.x() > map.width ||
+      texel.y() > map.height) {
+    if (!border.has_value()) return 0.0;
+    return *border == Border::kDark ? 1.0 - bit : bit;
+  }
+  const PixelPlane plane = {x, y, pixel->gradient};
+  return MeanOverPlaces([&](const Eigen::Vector2d& delta) {
+    const Eigen::Vector2d place = Eigen::Vector2d(x + 0.5, y + 0.5) + pixel->J_screen_map * delta;
+    const std::optional<double> there = shadow->At(place, plane);
+    return there.has_value() ? std::abs(*there - bit) : 0.0;
+  });
+}
+
 }  // namespace
 
 absl::StatusOr<double> ForetellByBits(const Readback& readback,
@@ -82,26 +106,26 @@ absl::StatusOr<double> ForetellByBits(const Readback& readback,
     if (absl::Status status = CheckStop(light); !status.ok()) return status;
     for (int x = stride / 2; x < readback.width(); x += stride) {
       ++num_looked_at;
-      const std::optional<PixelFootprint> pixel = footprints.At(x, y);
-      if (!pixel.has_value()) continue;
-      const double bit = shadow.Bit(x, y);
-      const Eigen::Vector2d& texel = pixel->texel;
-      const MapSize map = footprints.size(std::max(0, pixel->map));
-      if (pixel->is_behind || texel.x() < 0.0 || texel.y() < 0.0 || texel.x() > map.width ||
-          texel.y() > map.height) {
-        if (border.has_value()) sum += *border == Border::kDark ? 1.0 - bit : bit;
-        continue;
-      }
-      const PixelPlane plane = {x, y, pixel->gradient};
-      sum += MeanOverPlaces([&](const Eigen::Vector2d& delta) {
-        const Eigen::Vector2d place =
-            Eigen::Vector2d(x + 0.5, y + 0.5) + pixel->J_screen_map * delta;
-        const std::optional<double> there = shadow.At(place, plane);
-        return there.has_value() ? std::abs(*there - bit) : 0.0;
-      });
+      sum += WrongAt(footprints, border, x, y, &shadow);
     }
   }
   return num_looked_at > 0 ? sum / static_cast<double>(num_looked_at) : 0.0;
+}
+
+absl::Status ForetellImageByBits(const Readback& readback,
+                                 const Light& light,
+                                 const PixelFootprints& footprints,
+                                 std::optional<Border> border,
+                                 absl::Span<float> image) {
+  ShadowOfSurface shadow(readback, footprints, light.shadow_bit);
+  for (int y = 0; y < readback.height(); ++y) {
+    if (absl::Status status = CheckStop(light); !status.ok()) return status;
+    for (int x = 0; x < readback.width(); ++x) {
+      const double wrong = WrongAt(footprints, border, x, y, &shadow);
+      image[readback.Index(x, y)] = static_cast<float>(wrong);
+    }
+  }
+  return absl::OkStatus();
 }
 
 }  // namespace lightfit

@@ -7,7 +7,9 @@
 
 #include <optional>
 
+#include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "absl/types/span.h"
 #include "geometry/border.h"
 #include "geometry/light.h"
 #include "optimizer/figures/pixel_footprint.h"
@@ -25,5 +27,12 @@ absl::StatusOr<double> ForetellByBits(const Readback& readback,
                                       const Light& light,
                                       const PixelFootprints& footprints,
                                       std::optional<Border> border);
+
+// The same of each pixel into `image`, row-major, as large as the read-back.
+absl::Status ForetellImageByBits(const Readback& readback,
+                                 const Light& light,
+                                 const PixelFootprints& footprints,
+                                 std::optional<Border> border,
+                                 absl::Span<float> image);
 
 }  // namespace lightfit

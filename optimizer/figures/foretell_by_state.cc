@@ -79,11 +79,14 @@ class StateForecast {
   // The share of wrong pixels among those in row y that are looked at, `stride` apart.
   double SumOfRow(int y, int first, int stride) const {
     double sum = 0.0;
-    for (int x = first; x + 1 < readback_.width(); x += stride) {
-      const State state = At(x, y);
-      if (state == State::kLit || state == State::kDark) sum += WrongAt(x, y, state);
-    }
+    for (int x = first; x + 1 < readback_.width(); x += stride) sum += WrongOf(x, y);
     return sum;
+  }
+
+  // How likely the pixel is to be wrong; not for the outermost.
+  double WrongOf(int x, int y) const {
+    const State state = At(x, y);
+    return state == State::kLit || state == State::kDark ? WrongAt(x, y, state) : 0.0;
   }
 
   // A fit covers what its own read-back shows, so that none of it lies outside; things thinner than
@@ -285,6 +288,21 @@ absl::StatusOr<double> ForetellByState(const Readback& readback,
   const double share = sum / static_cast<double>(num_looked_at) +
                        forecast.OutsideUnseen() / static_cast<double>(readback.depth.size());
   return std::clamp(share, 0.0, 1.0);
+}
+
+absl::Status ForetellImageByState(const Readback& readback,
+                                  const Light& light,
+                                  const PixelFootprints& footprints,
+                                  std::optional<Border> border,
+                                  absl::Span<float> image) {
+  const StateForecast forecast(readback, light, footprints, border);
+  for (int y = 1; y + 1 < readback.height(); ++y) {
+    if (absl::Status status = CheckStop(light); !status.ok()) return status;
+    for (int x = 1; x + 1 < readback.width(); ++x) {
+      image[readback.Index(x, y)] = static_cast<float>(forecast.WrongOf(x, y));
+    }
+  }
+  return absl::OkStatus();
 }
 
 }  // namespace lightfit

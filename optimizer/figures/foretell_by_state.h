@@ -7,7 +7,9 @@
 
 #include <optional>
 
+#include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "absl/types/span.h"
 #include "geometry/border.h"
 #include "geometry/light.h"
 #include "optimizer/figures/pixel_footprint.h"
@@ -22,5 +24,13 @@ absl::StatusOr<double> ForetellByState(const Readback& readback,
                                        const Light& light,
                                        const PixelFootprints& footprints,
                                        std::optional<Border> border);
+
+// The same of each pixel into `image`, row-major, as large as the read-back; the outermost pixels
+// and what lies unseen outside of the map are not in it.
+absl::Status ForetellImageByState(const Readback& readback,
+                                  const Light& light,
+                                  const PixelFootprints& footprints,
+                                  std::optional<Border> border,
+                                  absl::Span<float> image);
 
 }  // namespace lightfit

@@ -44,7 +44,7 @@ PixelFootprints::PixelFootprints(const Readback& readback,
                                  const SampleOptions& options)
     : readback_(readback),
       options_(options),
-      affine_depth_(readback.camera, readback.depth_kind),
+      affine_depth_(AffineDepthOf(readback)),
       light_position_(light.HomogeneousPosition()),
       world_from_screen_(readback.camera.WorldFromScreen()),
       screen_from_world_(world_from_screen_.inverse()),

@@ -3,8 +3,9 @@
 // What a matrix, or several of one light, do at one pixel: where it lands in the map that it asks,
 // and how far a texel reaches there.
 // In:   Readback, Light, map_from_world of each map.
-// Out:  PixelFootprint, pixel by pixel: for pictures and forecasts. The search uses Samples
-// instead.
+// Out:  PixelFootprint, pixel by pixel: for pictures and forecasts.
+//
+// The search uses Samples instead.
 #pragma once
 
 #include <Eigen/Core>

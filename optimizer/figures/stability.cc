@@ -39,7 +39,7 @@ class Sight {
   Sight(const Readback& readback, const SampleOptions& options)
       : readback_(readback),
         options_(options),
-        affine_depth_(readback.camera, readback.depth_kind),
+        affine_depth_(AffineDepthOf(readback)),
         screen_from_world_(readback.camera.ScreenFromWorld()) {}
 
   bool Sees(const Eigen::Vector3d& position) const {
@@ -81,7 +81,7 @@ bool MeasurePoints(const Readback& readback,
                    const Sight& sight_after,
                    const CrawlOf& of,
                    Crawl* crawl) {
-  const AffineDepth affine_depth(readback.camera, readback.depth_kind);
+  const AffineDepth affine_depth = AffineDepthOf(readback);
   const Eigen::Matrix4d world_from_screen = readback.camera.WorldFromScreen();
   const double num_pixels = static_cast<double>(readback.width()) * readback.height();
   const int step = static_cast<int>(std::ceil(std::sqrt(num_pixels / kMaxPoints)));

@@ -36,6 +36,7 @@ Readback FineLayer(const Readback& readback, int layer, absl::Span<const uint32_
   finer.camera = ResizedCamera(readback.camera, fine.columns, fine.rows);
   finer.depth = layer == 0 ? fine.nearest : fine.furthest;
   finer.depth_kind = readback.depth_kind;
+  finer.background = readback.background;
   finer.shadow_bits = words;
   return finer;
 }

@@ -1,5 +1,7 @@
 #include "optimizer/readback/readback.h"
 
+#include <cmath>
+
 #include "absl/strings/str_format.h"
 #include "optimizer/readback/fine_cover.h"
 
@@ -8,6 +10,21 @@ namespace lightfit {
 absl::Status ValidateReadback(const Readback& readback) {
   if (absl::Status status = ValidateCamera(readback.camera, readback.depth_kind); !status.ok()) {
     return status;
+  }
+  if (readback.background.has_value()) {
+    const float background = *readback.background;
+    if (!(background > 0.0F)) {
+      return absl::InvalidArgumentError(absl::StrFormat(
+          "readback.background = %g, want a depth above 0, or infinity", background));
+    }
+    if (IsNdc(readback.depth_kind) && std::isfinite(background)) {
+      return absl::InvalidArgumentError(
+          absl::StrFormat("readback.background = %g: depths of kind %s have their background at "
+                          "the far plane, want "
+                          "none here",
+                          background,
+                          DepthKindName(readback.depth_kind)));
+    }
   }
   const size_t want = static_cast<size_t>(readback.width()) * readback.height();
   if (readback.depth.size() != want) {

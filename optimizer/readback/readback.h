@@ -7,9 +7,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "absl/status/status.h"
 #include "absl/types/span.h"
+#include "geometry/affine_depth.h"
 #include "geometry/border.h"
 #include "geometry/camera.h"
 
@@ -70,6 +72,12 @@ struct Readback {
   // Optional; must outlive the calls, as the buffers.
   const FineCover* fine_cover = nullptr;
 
+  // Depths at or beyond this one are background, where they are distances (kCameraZ, kDistance);
+  // infinity: those of kBackgroundDepth and more. Not set: so they are, and FindSurfaces() looks
+  // for a sky that is nearer (optimizer/readback/background.h). Shadow bits of the background mean
+  // nothing.
+  std::optional<float> background = std::nullopt;
+
   bool KnowsFacing(int shadow_bit) const {
     return !facing_bits.empty() && ((facing_lights >> shadow_bit) & 1u) != 0;
   }
@@ -83,6 +91,12 @@ struct Readback {
   // Where the pixel with column x and row y stands in `depth` and `shadow_bits`.
   size_t Index(int x, int y) const { return static_cast<size_t>(y) * camera.width + x; }
 };
+
+// What its depths mean.
+inline AffineDepth AffineDepthOf(const Readback& readback) {
+  return AffineDepth(
+      readback.camera, readback.depth_kind, readback.background.value_or(kBackgroundDepth));
+}
 
 // Checks the camera and the buffer sizes; says which field is wrong, its value, and what is wanted.
 // Pixels are looked at later: single bad depths are counted and ignored, see

@@ -11,8 +11,8 @@ namespace lightfit {
 struct SampleCounts {
   int64_t receivers = 0;      // pixels with a surface
   int64_t invalid_depth = 0;  // pixels with NaN, negative or out-of-range depth: ignored
-  int64_t candidates = 0;     // pixels whose shadow bit differs from a neighbour's
-  int64_t background = 0;     // candidates without a surface
+  int64_t candidates = 0;     // pixels whose shadow bit differs from a neighbour's; background: 0
+  int64_t background = 0;     // candidates without a surface, or with none on the other side
   int64_t discontinuity = 0;  // candidates at a depth discontinuity
   int64_t facing_away = 0;    // candidates whose surface, or whose lit side, faces away
   int64_t edge_on = 0;        // candidates edge-on to the light or the eye

@@ -119,9 +119,12 @@ class Terminators {
            surfaces_.affine_depth.IsSurface(surfaces_.readback.depth[pixel]);
   }
 
-  // A neighbour without shadow is a boundary pixel itself, unless no plane is known there.
+  // Whether nothing is lit there. A neighbour without shadow is a boundary pixel itself, unless no
+  // plane is known there.
   bool IsShadowedOrAway(int x, int y) const {
     if ((Word(x, y) & bit_) != 0) return true;
+    const float depth = surfaces_.readback.depth[surfaces_.readback.Index(x, y)];
+    if (!surfaces_.affine_depth.IsSurface(depth)) return true;
     const auto begin = surfaces_.boundary.begin();
     const auto found =
         std::lower_bound(begin + row_begin_[y],

@@ -10,6 +10,7 @@
 #include "absl/strings/str_format.h"
 #include "base/stop.h"
 #include "geometry/affine_depth.h"
+#include "optimizer/readback/background.h"
 #include "optimizer/readback/kernels.h"
 
 namespace lightfit {
@@ -20,9 +21,11 @@ std::atomic<int64_t> num_surfaces_found = 0;
 
 absl::Status NoReceiversError(const Readback& readback, int64_t num_invalid, int64_t num_pixels) {
   if (num_invalid == 0) {
+    const float background = readback.background.value_or(kBackgroundDepth);
     return absl::InvalidArgumentError(absl::StrFormat(
-        "readback.depth: all %d pixels are background, want at least one surface (depth kind %s)",
+        "readback.depth: all %d pixels are background%s, want at least one surface (depth kind %s)",
         num_pixels,
+        background < kBackgroundDepth ? absl::StrFormat(", which begins at %.9g", background) : "",
         DepthKindName(readback.depth_kind)));
   }
   return absl::InvalidArgumentError(absl::StrFormat(
@@ -33,6 +36,41 @@ absl::Status NoReceiversError(const Readback& readback, int64_t num_invalid, int
       num_pixels,
       DepthKindName(readback.depth_kind),
       readback.depth[0]));
+}
+
+// The shadow bits, 0 where there is no surface: what renderers write there means nothing.
+ScratchVector<uint32_t> BitsOfSurfaces(const Readback& readback, const AffineDepth& affine_depth) {
+  const auto surface_min = static_cast<float>(affine_depth.surface_min());
+  const auto surface_max = static_cast<float>(affine_depth.surface_max());
+  const size_t num_pixels = readback.depth.size();
+  const float* depth = readback.depth.data();
+  const uint32_t* bits = readback.shadow_bits.data();
+  ScratchVector<uint32_t> words(num_pixels);
+  for (size_t i = 0; i < num_pixels; ++i) {
+    const uint32_t is_surface = depth[i] > surface_min && depth[i] < surface_max ? ~0U : 0U;
+    words[i] = bits[i] & is_surface;
+  }
+  return words;
+}
+
+// At one pixel, the lights whose bit differs from a neighbour's, and from one that is a surface:
+// the outline of a shadowed thing against the background is no edge of a shadow.
+struct Differences {
+  uint32_t from_any = 0, from_surface = 0;
+};
+
+Differences DifferencesAt(const Surfaces& surfaces, const uint32_t* words, int x, int y) {
+  const int width = surfaces.readback.width();
+  const size_t at = surfaces.readback.Index(x, y);
+  Differences differences;
+  for (const size_t neighbour : {at - 1, at + 1, at - width, at + width}) {
+    const uint32_t differing = words[at] ^ words[neighbour];
+    differences.from_any |= differing;
+    if (differing != 0 && surfaces.affine_depth.IsSurface(surfaces.readback.depth[neighbour])) {
+      differences.from_surface |= differing;
+    }
+  }
+  return differences;
 }
 
 }  // namespace
@@ -104,11 +142,13 @@ Eigen::Vector3d SurfaceNormal(const Eigen::Matrix4d& screen_from_world,
   return (orthographic ? 1.0 : -1.0) * normal.normalized();
 }
 
-absl::StatusOr<Surfaces> FindSurfaces(const Readback& readback,
+absl::StatusOr<Surfaces> FindSurfaces(const Readback& given,
                                       uint32_t light_mask,
                                       const SampleOptions& options) {
   num_surfaces_found.fetch_add(1, std::memory_order_relaxed);
-  if (absl::Status status = ValidateReadback(readback); !status.ok()) return status;
+  if (absl::Status status = ValidateReadback(given); !status.ok()) return status;
+  Readback readback = given;
+  SettleBackground(light_mask, &readback);
   SampleOptions with_outlines = options;
   with_outlines.use_outlines = true;
   constexpr char kSubject[] = "readback";
@@ -132,9 +172,13 @@ absl::StatusOr<Surfaces> FindSurfaces(const Readback& readback,
       surfaces.world_from_screen.block<3, 1>(0, 2) /
       (readback.camera.orthographic ? 1.0 : surfaces.world_from_screen(3, 2));
   ScratchVector<int32_t> columns(width);
+  ScratchVector<uint32_t> bits_of_surfaces;
+  if (num_receivers < num_pixels) bits_of_surfaces = BitsOfSurfaces(readback, affine_depth);
+  const uint32_t* words =
+      bits_of_surfaces.empty() ? readback.shadow_bits.data() : bits_of_surfaces.data();
   for (int y = 1; y + 1 < height; ++y) {
     if (absl::Status status = CheckStop(kSubject); !status.ok()) return status;
-    const uint32_t* row = readback.shadow_bits.data() + static_cast<size_t>(y) * width;
+    const uint32_t* row = words + static_cast<size_t>(y) * width;
     const size_t num_columns =
         internal::ScanBoundary(row, width, width, light_mask, columns.data());
     for (size_t i = 0; i < num_columns; ++i) {
@@ -142,17 +186,18 @@ absl::StatusOr<Surfaces> FindSurfaces(const Readback& readback,
       const int x = columns[i];
       pixel.x = x;
       pixel.y = y;
-      pixel.lights = light_mask & ((row[x] ^ row[x - 1]) | (row[x] ^ row[x + 1]) |
-                                   (row[x] ^ row[x - width]) | (row[x] ^ row[x + width]));
+      const Differences differences = DifferencesAt(surfaces, words, x, y);
+      pixel.lights = light_mask & differences.from_surface;
       DepthGradient gradient;
       const bool is_surface =
           affine_depth.IsSurface(readback.depth[static_cast<size_t>(y) * width + x]);
       const bool continues =
-          is_surface && DepthGradientAt(readback, affine_depth, with_outlines, x, y, &gradient);
-      for (uint32_t bits = pixel.lights; bits != 0; bits &= bits - 1) {
+          is_surface && pixel.lights != 0 &&
+          DepthGradientAt(readback, affine_depth, with_outlines, x, y, &gradient);
+      for (uint32_t bits = light_mask & differences.from_any; bits != 0; bits &= bits - 1) {
         SampleCounts& counts = surfaces.counts[std::countr_zero(bits)];
         ++counts.candidates;
-        if (!is_surface) {
+        if (!is_surface || (pixel.lights & bits & -bits) == 0) {
           ++counts.background;
         } else if (!continues) {
           ++counts.discontinuity;

@@ -25,7 +25,7 @@ namespace lightfit {
 // A pixel at a shadow boundary of some light, on a surface whose plane its neighbours tell.
 struct BoundaryPixel {
   int x, y;                  // column and row
-  uint32_t lights;           // bits that differ from a neighbour's
+  uint32_t lights;           // bits that differ from those of a neighbour with a surface
   double d;                  // affine depth at the pixel's centre
   double d_x, d_y;           // its screen derivatives, per pixel: exact on a plane
   Eigen::Vector3d position;  // world
@@ -39,7 +39,7 @@ struct Surfaces {
   Surfaces(const Readback& readback, const SampleOptions& options)
       : readback(readback),
         options(options),
-        affine_depth(readback.camera, readback.depth_kind),
+        affine_depth(AffineDepthOf(readback)),
         world_from_screen(readback.camera.WorldFromScreen()) {}
 
   Readback readback;

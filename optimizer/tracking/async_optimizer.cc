@@ -68,6 +68,7 @@ Readback FrameReadback::View(FineCover* cover) const {
   view.camera = camera;
   view.depth = depth;
   view.depth_kind = depth_kind;
+  view.background = background;
   view.shadow_bits = shadow_bits;
   view.facing_bits = facing_bits;
   if (cover != nullptr && (fine_cover.columns != 0 || fine_cover.rows != 0)) {

@@ -18,6 +18,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,7 @@ struct FrameReadback {
   int64_t frame = 0;  // the caller's number; comes back with the matrices
   Camera camera;      // its width and height are the read-back's, pixels
   DepthKind depth_kind = DepthKind::kCameraZ;
+  std::optional<float> background;    // as Readback::background
   std::vector<float> depth;           // as Readback::depth
   std::vector<uint32_t> shadow_bits;  // as Readback::shadow_bits
   std::vector<uint32_t> facing_bits;  // as Readback::facing_bits; empty: not known

@@ -28,6 +28,7 @@ from lightfit.errors import (
     FailedPreconditionError,
     InvalidArgumentError,
     LightfitError,
+    LightfitWarning,
     TooLargeError,
     UnavailableError,
 )
@@ -109,6 +110,7 @@ __all__ = [
     "Light",
     "LightResult",
     "LightfitError",
+    "LightfitWarning",
     "Local",
     "MapSizeRules",
     "Plan",

@@ -59,6 +59,7 @@ class Calls(ShotCalls):
         facing: Any = None,
         mapped: Any = None,
         cover: Optional[FineCover] = None,
+        background: Optional[float] = None,
         source: str = "",
         timeout_s: Optional[float] = None,
         request_id: Optional[str] = None,
@@ -66,7 +67,8 @@ class Calls(ShotCalls):
         """The matrices of a read-back's lights.
 
         depth: (height, width) float32 or float16, top row first, of the kind that the camera says.
-            Background is 1e9 or more, infinity, or the far plane; single bad values are ignored.
+            Background is 1e9 or more, infinity, or the far plane, see `background`; single bad
+            values are ignored.
         shadow: (height, width) uint32, bit l is 1 where light l is blocked; or (lights, height,
             width), one plane per light: bool, or uint8 with 255 where it is blocked.
         camera: `Camera.from_matrices(...)`, or a lightfit.v1 Camera message.
@@ -87,11 +89,19 @@ class Calls(ShotCalls):
         mapped: likewise, what the map that is drawn with says: 1 where it finds shadow. Optional.
         cover: the same frame with more pixels, `FineCover(depth, shadow)`: what is thinner than a
             pixel of the read-back has room in the map then. Optional.
+        background: of depths that are distances, the one at and beyond which nothing was hit, such
+            as 65504; math.inf: none but 1e9 or more. None: one greatest depth that many pixels
+            share, far beyond the rest, is taken for it, with a warning.
         source: where the read-back came from; comes back in result.message.readback.source.
+
+        What may be a mistake, as a sky that was taken for background or shadows that do not belong
+        to the lights, is a LightfitWarning, and stands in result.message.readback.warnings.
 
         Each light has its own status: a light without a matrix does not raise.
         """
-        parts = readback_parts(depth, shadow, camera, lights, source, facing, mapped, cover)
+        parts = readback_parts(
+            depth, shadow, camera, lights, source, facing, mapped, cover, background
+        )
         request = fit_request(parts, map_size, options, clip, foretell_wrong)
         return FitResult.of(self._fit(request, parts.pixels, timeout_s, request_id))
 
@@ -179,6 +189,7 @@ class Calls(ShotCalls):
         facing: Any = None,
         mapped: Any = None,
         cover: Optional[FineCover] = None,
+        background: Optional[float] = None,
         source: str = "",
         timeout_s: Optional[float] = None,
         request_id: Optional[str] = None,
@@ -187,9 +198,11 @@ class Calls(ShotCalls):
 
         matrices: any number per light, `Candidate.map("sun", map_from_world, (1024, 1024))` or
             `Candidate.clip("sun", clip_from_world, (1024, 1024), clip="opengl")`.
-        depth, shadow, camera, lights, options, facing, mapped, cover: as for `fit`.
+        depth, shadow, camera, lights, options, facing, mapped, cover, background: as for `fit`.
         """
-        parts = readback_parts(depth, shadow, camera, lights, source, facing, mapped, cover)
+        parts = readback_parts(
+            depth, shadow, camera, lights, source, facing, mapped, cover, background
+        )
         request = evaluate_request(parts, matrices, options)
         return EvaluateResult.of(self._call("Evaluate", request, timeout_s, request_id))
 
@@ -211,6 +224,7 @@ class Calls(ShotCalls):
         facing: Any = None,
         mapped: Any = None,
         cover: Optional[FineCover] = None,
+        background: Optional[float] = None,
         source: str = "",
         timeout_s: Optional[float] = None,
         request_id: Optional[str] = None,
@@ -233,7 +247,15 @@ class Calls(ShotCalls):
         if any(part is not None for part in (depth, shadow, camera, lights)):
             given_camera: Any = camera  # says what it wants when it is missing, as the others do
             parts = readback_parts(
-                depth, shadow, given_camera, lights or (), source, facing, mapped, cover
+                depth,
+                shadow,
+                given_camera,
+                lights or (),
+                source,
+                facing,
+                mapped,
+                cover,
+                background,
             )
         request = allocate_request(
             parts,

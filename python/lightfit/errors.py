@@ -33,6 +33,10 @@ class Code(enum.IntEnum):
         return cls(number).name if number in cls._value2member_map_ else str(number)
 
 
+class LightfitWarning(UserWarning):
+    """Input that was used as it is and may be a mistake. The text says what to do."""
+
+
 class LightfitError(Exception):
     """A call that failed as a whole. `str()` is one line that says what is wrong and the way out.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import os
+import warnings
 from typing import Any, Dict, List, Mapping, Optional, Tuple
 
 import numpy
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 
 from lightfit import _load
 from lightfit.cover import FineCover
+from lightfit.errors import LightfitWarning
 from lightfit.inputs import AnyCamera, Camera, Lights, Path_, depth_kind_number, light_messages
 from lightfit.request import ReadbackParts, readback_parts
 from lightfit.v1 import camera_pb2, light_pb2, result_pb2
@@ -37,6 +39,9 @@ class ExrReadback:
 
     cover: Optional[FineCover] = None  # of a second, larger file
 
+    # At and beyond this depth nothing was hit, as stated or found; math.inf: nowhere before 1e9.
+    background: Optional[float] = None
+
     def parts(self) -> ReadbackParts:
         return readback_parts(
             self.depth,
@@ -47,6 +52,7 @@ class ExrReadback:
             self.facing,
             self.mapped,
             self.cover,
+            self.background,
         )
 
 
@@ -68,6 +74,7 @@ def read_exr(
     mapped_channel: str = "",
     cover: Optional[Path_] = None,
     view: str = "",
+    background: Optional[float] = None,
 ) -> ExrReadback:
     """Reads depth, shadows, camera, and what there is of facing and mapped.
 
@@ -92,6 +99,10 @@ def read_exr(
         channels have the same names, and its camera is the read-back's.
     view: the view of a stereo file that depth, shadows and camera are of. "": the only one that
         has a depth.
+    background: as for `fit`.
+
+    What in the file may be a mistake, as lights that differ from those in its header, is a
+    LightfitWarning.
 
     Raises InvalidArgumentError when the file, its depth or its camera cannot be used. A light
     without a shadow channel has its own `light_status`, and no shadow.
@@ -108,7 +119,12 @@ def read_exr(
         "mapped_channel": mapped_channel,
         "depth_kind": 0 if depth_kind is None else depth_kind_number(depth_kind),
     }
-    for name, value in (("near", near), ("far", far), ("pixel_aspect", pixel_aspect)):
+    for name, value in (
+        ("near", near),
+        ("far", far),
+        ("pixel_aspect", pixel_aspect),
+        ("background", background),
+    ):
         if value is not None:
             options[name] = float(value)
     if camera is not None:
@@ -116,9 +132,11 @@ def read_exr(
         options["camera"] = message.SerializeToString()
     name = os.fspath(path)
     light_list = light_pb2.LightList(lights=messages).SerializeToString()
-    depth, shadow, facing, mapped, found, statuses, origin = _load.native().read_exr(
+    depth, shadow, facing, mapped, found, statuses, origin, begin, notes = _load.native().read_exr(
         name, light_list, options
     )
+    for note in notes:
+        warnings.warn(f"{name}: {_in_words_of_here(note)}", LightfitWarning, stacklevel=2)
     fine = None
     if cover is not None:
         fine_depth, fine_shadow, lit = _load.native().read_cover_exr(
@@ -136,7 +154,15 @@ def read_exr(
         facing=_planes(facing, len(messages)),
         mapped=_planes(mapped, len(messages)),
         cover=fine,
+        background=begin,
     )
+
+
+def _in_words_of_here(note: str) -> str:
+    """Options of the command line as arguments."""
+    for option in ("background", "camera-convention"):
+        note = note.replace(f"--{option} ", f"{option.replace('-', '_')} = ")
+    return note.replace("--", "")
 
 
 def _planes(

@@ -258,6 +258,7 @@ def camera_message(camera: AnyCamera, width: int, height: int) -> camera_pb2.Cam
         raise InvalidArgumentError(
             f"camera: is {message.width} x {message.height} pixels and depth has shape "
             f"{(height, width)}, want the same size (shape is (height, width))"
+            + (": depth.T" if (message.height, message.width) == (width, height) else "")
         )
     return message
 

@@ -30,6 +30,7 @@ class PlanCalls(Answers):
         facing: Any = None,
         mapped: Any = None,
         cover: Optional[FineCover] = None,
+        background: Optional[float] = None,
         source: str = "",
         timeout_s: Optional[float] = None,
         request_id: Optional[str] = None,
@@ -47,7 +48,9 @@ class PlanCalls(Answers):
         A lamp among its receivers, which no single map serves, has a plan: its status says how many
         maps would do where there are too few.
         """
-        parts = readback_parts(depth, shadow, camera, lights, source, facing, mapped, cover)
+        parts = readback_parts(
+            depth, shadow, camera, lights, source, facing, mapped, cover, background
+        )
         request = fit_request(parts, plan_message(plan), options, clip, foretell_wrong)
         return FitResult.of(self._fit(request, parts.pixels, timeout_s, request_id))
 

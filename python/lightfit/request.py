@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from typing import Any, Dict, Iterable, Mapping, Optional, Sequence, Tuple, Union
 
 from numpy.typing import ArrayLike
@@ -57,6 +58,7 @@ def readback_parts(
     facing: Any = None,
     mapped: Any = None,
     cover: Optional[FineCover] = None,
+    background: Optional[float] = None,
 ) -> ReadbackParts:
     messages = light_messages(lights)
     pixels = check_pixels(depth, shadow, len(messages), facing, mapped)
@@ -64,6 +66,8 @@ def readback_parts(
     header = pixels.header()
     header.camera.CopyFrom(camera_message(camera, pixels.width, pixels.height))
     header.source = source
+    if background is not None:
+        header.background = _depth_of(background)
     return ReadbackParts(header, messages, pixels)
 
 
@@ -76,12 +80,28 @@ def optional_parts(
     facing: Any = None,
     mapped: Any = None,
     cover: Optional[FineCover] = None,
+    background: Optional[float] = None,
 ) -> Optional[ReadbackParts]:
     """None where there is none of it."""
     if all(part is None for part in (depth, shadow, camera, lights)):
         return None
     given_camera: Any = camera  # says what it wants when it is missing, as the others do
-    return readback_parts(depth, shadow, given_camera, lights or (), source, facing, mapped, cover)
+    return readback_parts(
+        depth, shadow, given_camera, lights or (), source, facing, mapped, cover, background
+    )
+
+
+def _depth_of(background: Any) -> float:
+    try:
+        depth = float(background)
+    except (TypeError, ValueError):
+        depth = math.nan
+    if not depth > 0:
+        raise InvalidArgumentError(
+            f"background = {background!r}, want the depth at and beyond which nothing was hit, or "
+            "math.inf"
+        )
+    return depth
 
 
 def fit_request(

@@ -4,9 +4,10 @@ with all fields of the schema."""
 from __future__ import annotations
 
 import dataclasses
+import warnings
 from typing import Dict, List, Optional, Tuple
 
-from lightfit.errors import Code, error_of
+from lightfit.errors import Code, LightfitWarning, error_of
 from lightfit.messages import (
     Footprint,
     Matrix,
@@ -168,6 +169,7 @@ class FitResult(_Lights):
 
     @classmethod
     def of(cls, message: result_pb2.FitResult) -> "FitResult":
+        _warn(message.readback)
         return cls([LightResult.of(light) for light in message.lights], message)
 
 
@@ -213,6 +215,7 @@ class EvaluateResult:
 
     @classmethod
     def of(cls, message: service_pb2.EvaluateResult) -> "EvaluateResult":
+        _warn(message.readback)
         return cls([Evaluation.of(evaluation) for evaluation in message.evaluations], message)
 
 
@@ -231,11 +234,18 @@ class Allocation(_Lights):
 
     @classmethod
     def of(cls, message: allocation_pb2.Allocation) -> "Allocation":
+        _warn(message.readback)
         return cls([LightResult.of(light) for light in message.lights], message.texels, message)
 
 
 def status_of(message: result_pb2.Status) -> Status:
     return Status(Code.name_of(message.code), message.message)
+
+
+def _warn(readback: result_pb2.ReadbackInfo) -> None:
+    """In the name of whoever called for the result."""
+    for text in readback.warnings:
+        warnings.warn(text, LightfitWarning, stacklevel=4)
 
 
 def _named(light: LightResult) -> str:

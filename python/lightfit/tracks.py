@@ -34,19 +34,22 @@ class Track(abc.ABC):
         facing: Any = None,
         mapped: Any = None,
         cover: Optional[FineCover] = None,
+        background: Optional[float] = None,
         source: str = "",
     ) -> FitResult:
         """The matrices, or plans, of the next frame.
 
         number: the caller's, comes back in result.message.shot.number.
-        depth, shadow, camera, lights, facing, mapped, cover: as for `fit`, plans without cover. A
-            light is known by its name, and forgotten when a frame is without it.
+        depth, shadow, camera, lights, facing, mapped, cover, background: as for `fit`, plans
+            without cover. A light is known by its name, and forgotten when a frame is without it.
 
         LightResult.action says what became of the matrix of the frame before, PlanMap.action of
         each map of a plan. Raises LightfitError when the frame cannot be used; the tracker stays as
         it was, and the next frame may come.
         """
-        parts = readback_parts(depth, shadow, camera, lights, source, facing, mapped, cover)
+        parts = readback_parts(
+            depth, shadow, camera, lights, source, facing, mapped, cover, background
+        )
         return self.update_parts(number, parts)
 
     def update_parts(self, number: int, parts: ReadbackParts) -> FitResult:

@@ -243,6 +243,7 @@ absl::StatusOr<ReadbackExrOptions> ExrOptionsOf(const py::dict& fields) {
   Take(fields, "near", &options.camera_exr.near);
   Take(fields, "far", &options.camera_exr.far);
   Take(fields, "pixel_aspect", &options.camera_exr.pixel_aspect);
+  if (fields.contains("background")) options.background = fields["background"].cast<float>();
   Take(fields, "depth_channel", &options.depth_channel);
   Take(fields, "view", &options.view);
   Take(fields, "shadow_channel", &shadow_channel);
@@ -281,8 +282,18 @@ absl::StatusOr<std::vector<Light>> LightsOfList(const std::string& lights_bytes)
   return lights;
 }
 
+// What calls find in the pixels, they say.
+py::list WarningsOfFile(const ReadbackFile& file) {
+  py::list texts;
+  for (const ReadbackWarning& warning : file.warnings) {
+    if (!warning.is_of_pixels) texts.append(warning.text);
+  }
+  return texts;
+}
+
 // (depth, shadow bits, (facing bits, lights), (mapped bits, lights), lightfit.v1.Camera, [(code,
-// message) of each light], lightfit.v1.ReadbackOrigin); of the lights 0 where there are no bits.
+// message) of each light], lightfit.v1.ReadbackOrigin, background or None, [warning]); of the
+// lights 0 where there are no bits.
 py::tuple ReadExr(const std::string& path,
                   const std::string& lights_bytes,
                   const py::dict& fields) {
@@ -314,7 +325,9 @@ py::tuple ReadExr(const std::string& path,
       optional(std::move(file->mapped_bits), file->mapped_lights),
       py::bytes(CameraToProto(file->camera, file->depth_kind).SerializeAsString()),
       statuses,
-      py::bytes(OriginToProto(file->origin).SerializeAsString()));
+      py::bytes(OriginToProto(file->origin).SerializeAsString()),
+      file->background.has_value() ? py::object(py::float_(*file->background)) : py::none(),
+      WarningsOfFile(*file));
 }
 
 // (depth, shadow bits, (lit bits, lights)) of the read-back whose lightfit.v1.Camera that is; of

@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "render/scene.h"
+#include "scenes/scene.h"
 
 namespace lightfit {
 

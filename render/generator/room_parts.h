@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "render/generator/shapes.h"
-#include "render/scene.h"
+#include "scenes/scene.h"
 
 namespace lightfit {
 

@@ -9,7 +9,7 @@
 #include <cstdint>
 
 #include "absl/status/statusor.h"
-#include "render/scene.h"
+#include "scenes/scene.h"
 
 namespace lightfit {
 

@@ -11,7 +11,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-#include "render/scene.h"
+#include "scenes/scene.h"
 
 namespace lightfit {
 

@@ -230,7 +230,7 @@ ParaboloidRaster::ParaboloidRaster(const Scene& scene,
     for (int i = begin; i < end; ++i) {
       std::array<Eigen::Vector3d, 3> triangle;
       for (int k = 0; k < 3; ++k) {
-        triangle[k] = scene.vertices[scene.triangles[i][k]].cast<double>();
+        triangle[k] = scene.WorldOf(scene.triangles[i][k]);
       }
       for (const HalfRaster& half : halves) half.Draw(triangle, &chunks[begin / kChunk]);
     }

@@ -29,9 +29,9 @@
 #include "absl/status/status.h"
 #include "absl/types/span.h"
 #include "partition/shipped/paraboloid.h"
-#include "render/scene.h"
 #include "render/shipped/texel_grid.h"
 #include "render/texel_maps.h"
+#include "scenes/scene.h"
 
 namespace lightfit {
 

@@ -40,6 +40,26 @@ TEST(Table, AlignsColumnsUnderTheirGroups) {
             "a long name    no matrix, see below\n");
 }
 
+TEST(Shortened, KeepsBothEndsOfALongName) {
+  EXPECT_EQ(Shortened("key", 12), "key");
+  EXPECT_EQ(Shortened("twelve chars", 12), "twelve chars");
+  EXPECT_EQ(Shortened("collection|street|lamp.001", 12), "col...mp.001");
+  EXPECT_EQ(Shortened("Lämpchen über der Tür ÄÖÜ", 12), "Läm...ür ÄÖÜ");
+}
+
+TEST(Table, ShortensLongNamesInRowsOfFigures) {
+  Table table;
+  table.AddColumn("", "light");
+  table.AddColumn("", "n");
+  const std::string name = std::string(30, 'a') + std::string(30, 'b');
+  table.AddRow({name, "1"});
+  table.AddRow({"sun", "2"});
+  const std::string shortened = std::string(12, 'a') + "..." + std::string(25, 'b');
+  EXPECT_EQ(table.Text(),
+            "\nlight" + std::string(35, ' ') + "  n\n" + shortened + "  1\nsun" +
+                std::string(37, ' ') + "  2\n");
+}
+
 TEST(Table, CountsCharactersNotBytes) {
   Table table;
   table.AddColumn("", "name");
@@ -55,6 +75,10 @@ TEST(DidYouMean, OffersOnlyCloseWords) {
   EXPECT_EQ(DidYouMean("kay", choices), "; did you mean \"key\"?");
   EXPECT_EQ(DidYouMean("lantern", choices), "");
   EXPECT_EQ(DidYouMean("sun", {}), "");
+  EXPECT_EQ(DidYouMean("fti", {"fit", "shot"}), "; did you mean \"fit\"?");
+  EXPECT_EQ(DidYouMean("depth", {"depth-kind", "depth-channel", "map"}),
+            "; did you mean \"depth-kind\" or \"depth-channel\"?");
+  EXPECT_EQ(DidYouMean("near-clip", {"x"}), "");
 }
 
 }  // namespace

@@ -25,7 +25,8 @@ constexpr int64_t kBudget = 600 * 600;
 TEST(AllocatePlans, DividesABudgetAmongLightsAndMaps) {
   const TemporaryFolder folder;
   const std::string json = folder.Path("maps.json");
-  const ProcessResult run = AllocateYard({"--budget", "600x600", "--maps", "3", "--json", json});
+  const ProcessResult run =
+      AllocateYard({"--budget", "600x600", "--maps", "3", "--json", json, "--legend"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.err, IsEmpty());
   EXPECT_THAT(run.out, HasSubstr("plans of equal"));

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
 #include "tests/cli/allocations.h"
 #include "tests/cli/examples.h"
 #include "tests/testing/process.h"
@@ -186,11 +187,37 @@ TEST(Allocate, NamesTheLightsThatMissTheToleranceAndGivesTheirBest) {
   EXPECT_THAT(result.err,
               AllOf(HasSubstr("light \"sun\": "),
                     HasSubstr("pixels at the largest map, 512 x 512"),
-                    HasSubstr("raise --max-side (512) or the tolerance")));
+                    HasSubstr("raise --max-side (512), or --tolerance rms:")));
   EXPECT_THAT(result.out, HasSubstr("missed"));
   const v1::Allocation allocation = ReadAllocation(json);
   EXPECT_FALSE(allocation.maps(0).reached().is_met());
   EXPECT_TRUE(MatrixOf(allocation.lights(0).map_from_world()).allFinite());
+}
+
+// What the message says can be kept is kept, by each light at the same largest map; and no less
+// can.
+TEST(Allocate, SaysWhichToleranceCanBeKept) {
+  for (const char* kind : {"rms", "p99", "worst"}) {
+    const std::vector<std::string> limits = {"--max-side", "512", "--quiet"};
+    std::vector<std::string> arguments = {"--tolerance", absl::StrCat(kind, ":0.01")};
+    arguments.insert(arguments.end(), limits.begin(), limits.end());
+    const ProcessResult missed = AllocateYard(arguments);
+    EXPECT_EQ(missed.exit_code, 3);
+    int num_lights = 0;
+    for (const absl::string_view line : absl::StrSplit(missed.err, '\n', absl::SkipEmpty())) {
+      const std::vector<std::string> quoted = absl::StrSplit(line, '"');
+      const std::vector<std::string> words = absl::StrSplit(line, "--tolerance ");
+      ASSERT_EQ(quoted.size(), 3U) << line;
+      ASSERT_EQ(words.size(), 2U) << line;
+      const std::string tolerance = words[1].substr(0, words[1].find(' '));
+      arguments = {"--only", quoted[1], "--tolerance", tolerance};
+      arguments.insert(arguments.end(), limits.begin(), limits.end());
+      const ProcessResult kept = AllocateYard(arguments);
+      EXPECT_EQ(kept.exit_code, 0) << line << "\n" << kept.err;
+      ++num_lights;
+    }
+    EXPECT_EQ(num_lights, 3);
+  }
 }
 
 TEST(Allocate, LightsWithoutAMapDoNotStopTheOthers) {

@@ -65,8 +65,12 @@ class CompareNextTest : public ::testing::Test {
 };
 
 TEST_F(CompareNextTest, ASceneGivesDriftAndFlips) {
-  const ProcessResult result =
-      OnScene({"--crawl", "--json", folder_.Path("out.json"), "--csv", folder_.Path("out.csv")});
+  const ProcessResult result = OnScene({"--crawl",
+                                        "--json",
+                                        folder_.Path("out.json"),
+                                        "--csv",
+                                        folder_.Path("out.csv"),
+                                        "--legend"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out,
               AllOf(HasSubstr("crawl: to the next frame, the camera moves 0."),

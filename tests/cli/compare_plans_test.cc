@@ -55,31 +55,19 @@ class ComparePlansTest : public ::testing::Test {
 };
 
 TEST_F(ComparePlansTest, EverySchemeHasARowOfEqualTexels) {
-  const ProcessResult result = RunLightfit({"compare",
-                                            "generate:triangles=20000",
-                                            "--camera",
-                                            "0,1.7,18:0,0.5,0",
-                                            "--screen",
-                                            "160x120",
-                                            "--readback",
-                                            "100x75",
-                                            "--light",
-                                            "sun=sun:-1,-1.3,0.4",
-                                            "--light",
-                                            "lamp=point:2,4,3",
-                                            "--per-light",
-                                            "--maps",
-                                            "4",
-                                            "--texels",
-                                            "100x100",
-                                            "--phases",
-                                            "1",
-                                            "--json",
-                                            folder_.Path("out.json"),
-                                            "--csv",
-                                            folder_.Path("out.csv"),
-                                            "--picture",
-                                            folder_.Path("out.png")});
+  const ProcessResult result = RunLightfit({"compare",     "generate:triangles=20000",
+                                            "--camera",    "0,1.7,18:0,0.5,0",
+                                            "--screen",    "160x120",
+                                            "--readback",  "100x75",
+                                            "--light",     "sun=sun:-1,-1.3,0.4",
+                                            "--light",     "lamp=point:2,4,3",
+                                            "--per-light", "--legend",
+                                            "--maps",      "4",
+                                            "--texels",    "100x100",
+                                            "--phases",    "1",
+                                            "--json",      folder_.Path("out.json"),
+                                            "--csv",       folder_.Path("out.csv"),
+                                            "--picture",   folder_.Path("out.png")});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.err, IsEmpty());
   EXPECT_THAT(result.out,
@@ -171,6 +159,8 @@ TEST_F(ComparePlansTest, AReadbackGivesEnergiesOfPlans) {
                                             kYardLights,
                                             "--maps",
                                             "2",
+                                            "--texels",
+                                            "160000",
                                             "--json",
                                             folder_.Path("out.json")});
   EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -217,7 +207,7 @@ TEST_F(ComparePlansTest, HelpTellsOfSeveralMaps) {
   const ProcessResult result = RunLightfit({"compare", "--help"});
   EXPECT_THAT(result.out,
               AllOf(HasSubstr("--maps COUNT"),
-                    HasSubstr("[400x400, as one map has]"),
+                    HasSubstr("[1024x1024, as one map has]"),
                     HasSubstr("--maps 4 --texels 1024x1024")));
 }
 

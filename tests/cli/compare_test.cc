@@ -265,7 +265,7 @@ TEST_F(CompareTest, HelpHasUnitsAndExamples) {
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_THAT(result.out,
               AllOf(HasSubstr("--random-lights"),
-                    HasSubstr("texels [400x400]"),
+                    HasSubstr("texels [1024x1024]"),
                     HasSubstr("pixels [750x750]"),
                     HasSubstr("Examples"),
                     HasSubstr("--metric")));
@@ -285,7 +285,7 @@ TEST_F(CompareTest, WrongUsageIsExitCodeOne) {
   ExpectError(CompareScene({"--matrix", "a=x.json", "--matrix", "a=y.json"}), 1, "taken");
   ExpectError(CompareScene({"--bias", "none"}), 1, "--bias");
   ExpectError(CompareScene({"--bias-share", "-1"}), 1, "--bias-share");
-  ExpectError(CompareScene({"--phases", "3"}), 1, "phases = 3, want a square number");
+  ExpectError(CompareScene({"--phases", "3"}), 1, "--phases 3, want a square number");
   ExpectError(CompareScene({"--phases", "81"}), 1, "81");
   ExpectError(CompareScene({"--margin-percent", "nan"}), 1, "nan");
 }

@@ -47,12 +47,12 @@ TEST(CommandLine, WrongUsageIsExitCodeOne) {
   ExpectError(FitYard({"--no-such-option"}), 1, "--no-such-option");
   ExpectError(FitYard({"--map"}), 1, "--map");
   ExpectError(FitYard({"--margin-percent", "-1"}), 1, "--margin-percent");
-  ExpectError(FitYard({"--margin-percent", "nan"}), 1, "margin_percent = nan");
+  ExpectError(FitYard({"--margin-percent", "nan"}), 1, "--margin-percent nan");
   ExpectError(FitYard({"--as-published", "--search", "line"}), 1, "--as-published");
 }
 
 TEST(CommandLine, RefusesMapsThatAreNoSize) {
-  for (const char* map : {"foo", "1024", "0x10", "-4x4", "10x", "10x10x10", "1e3x10", "99999x10"}) {
+  for (const char* map : {"foo", "0x10", "-4x4", "10x", "10x10x10", "1e3x10", "99999x10"}) {
     SCOPED_TRACE(map);
     ExpectError(FitYard({"--map", map}), 1, map);
   }

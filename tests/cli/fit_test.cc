@@ -42,7 +42,7 @@ std::pair<uint32_t, uint32_t> PngSize(const std::string& path) {
   return {word(16), word(20)};
 }
 
-TEST(Fit, PrintsEveryLightWithItsFiguresAndWhatTheyMean) {
+TEST(Fit, PrintsEveryLightWithItsFigures) {
   const ProcessResult result = RunLightfit({"fit", kYard, "--lights", kYardLights});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.err, IsEmpty());
@@ -55,7 +55,8 @@ TEST(Fit, PrintsEveryLightWithItsFiguresAndWhatTheyMean) {
                             "facing away",
                             "edge-on",
                             "background",
-                            "read-back pixels"}) {
+                            "footprint, px",
+                            "\n\nColumns: lightfit fit --help, or --legend here.\n"}) {
     EXPECT_THAT(result.out, HasSubstr(words));
   }
   int num_sun_rows = 0;

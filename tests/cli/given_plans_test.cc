@@ -139,7 +139,8 @@ v1::FitResult PlansOf(const v1::Comparison& comparison) {
 // A file's camera has other roundings than the comparison's own frame, so that a fit from it is not
 // the same plan to the last digit: the comparison's own plan is.
 TEST_F(GivenPlansTest, TheSamePlanHasTheSameWrongPixels) {
-  const Arguments maps = {"--maps", "3", "--texels", "40x40", "--guard", "1", "--per-light"};
+  const Arguments maps = {
+      "--maps", "3", "--texels", "40x40", "--guard", "1", "--per-light", "--legend"};
   const v1::FitResult fit = FitFrame("40x40");
   EXPECT_GT(fit.lights(1).plan().maps_size(), 1);
   const ProcessResult of_fit = CompareKept(maps);
@@ -218,6 +219,8 @@ TEST_F(GivenPlansTest, AReadbackGivesThePlansFigures) {
                                             kYardLights,
                                             "--maps",
                                             "3",
+                                            "--texels",
+                                            "160000",
                                             "--matrix",
                                             "kept=" + folder_.Path("plan.json"),
                                             "--json",

@@ -121,7 +121,7 @@ TEST(Render, SaysWhatIsWrongWithTheScene) {
   ExpectError(render(folder.Path("empty.obj")), 2, "empty");
   WriteFile(folder.Path("flat.obj"), "v 0 0 0\nv 1 1 1\nv 2 2 2\nf 1 2 3\n");
   ExpectError(render(folder.Path("flat.obj")), 2, "area");
-  ExpectError(render("generate:objects=0"), 2, "num_objects = 0");
+  ExpectError(render("generate:objects=0"), 2, "objects = 0");
   ExpectError(render("generate:object=1"), 1, "did you mean \"objects\"");
   EXPECT_THAT(folder.Files(), ElementsAre("empty.obj", "flat.obj"));
 }

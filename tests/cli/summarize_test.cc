@@ -193,8 +193,8 @@ TEST(Summarize, OnlyLikeThingsAreAdded) {
   const std::string only = YardSummary(folder, "only.summary", {"--only", "sun"});
   const std::string moved = YardSummary(folder, "moved.summary", {"--light", "sun=sun:0,0,-1"});
   const std::pair<std::string, std::vector<std::string>> others[] = {
-      {l2, {"l2.summary", "options.metric", "METRIC_L2 here", "METRIC_L1_ACROSS_EDGE"}},
-      {wide, {"wide.summary", "options.cover", "COVER_RECEIVERS", "COVER_SHADOWED"}},
+      {l2, {"l2.summary", "--metric is l2 here", "l1-edge"}},
+      {wide, {"wide.summary", "--cover is receivers", "shadowed"}},
       {only, {"only.summary", "\"sun\"", "\"rim\"", "--only"}},
       {moved, {"moved.summary", "\"sun\"", "direction"}}};
   for (const auto& [other, words] : others) {
@@ -204,7 +204,7 @@ TEST(Summarize, OnlyLikeThingsAreAdded) {
   // A read-back is summed as the flags say, not as the file beside it was.
   ExpectError(RunLightfit({"summarize", l2, kYard, "--lights", kYardLights, "-o", sum}),
               2,
-              {"0001.exr", "options.metric"});
+              {"0001.exr", "--metric is l1-edge"});
   RunSummarize({l2, kYard, "--lights", kYardLights, "--metric", "l2", "-o", sum});
 }
 
@@ -213,7 +213,7 @@ TEST(Summarize, FlagsThatMeanNothingAreRefused) {
   const std::string plain = YardSummary(folder, "plain.summary");
   const std::string out = folder.Path("out.summary");
   ExpectError(RunLightfit({"summarize", kYard, "--lights", kYardLights}), 1, {"--output"});
-  ExpectError(RunLightfit({"summarize", "-o", out}), 1, {"inputs"});
+  ExpectError(RunLightfit({"summarize", "-o", out}), 1, {"READBACK.exr|FILE.summary"});
   ExpectError(RunLightfit({"summarize", kYard, "-o", out}), 2, {"--lights"});
   ExpectError(RunLightfit({"summarize", plain, "-o", "/no/such/folder/x"}), 2, {"/no/such/folder"});
   ExpectError(RunLightfit({"summarize", plain, "--metric", "l2", "-o", out}),

@@ -200,7 +200,7 @@ TEST_F(TuneTest, HelpHasUnitsAndExamples) {
   EXPECT_THAT(result.out,
               AllOf(HasSubstr("--evaluations"),
                     HasSubstr("--journal"),
-                    HasSubstr("texels [400x400]"),
+                    HasSubstr("texels [1024x1024]"),
                     HasSubstr("Of the random lights and of the search"),
                     HasSubstr("Examples"),
                     HasSubstr("--metric")));

@@ -234,6 +234,43 @@ def test_no_light_is_missed_among_many(
     check_shadows(many, fitted.folder / "scene.obj", min_shadowed=0.0)
 
 
+def test_soft_large_and_linked_lights_are_named(fitted: Fitted, server: Server, tmp_path) -> None:
+    """The demo's sun has 5 degrees, its lamp a quarter metre at some metres from the boxes."""
+    assert 'warning: light "sun": is a soft sun of 5 degrees' in fitted.said
+    assert 'warning: light "lamp": has a radius of 0.25' in fitted.said
+    script = tmp_path / "instance.py"
+    script.write_text(
+        "import bpy\n"
+        "bpy.data.objects['sun'].data.angle = 0.0\n"
+        "bpy.data.objects['lamp'].data.shadow_soft_size = 0.0\n"
+        "rig = bpy.data.collections.new('rig')\n"
+        "rig.objects.link(bpy.data.objects.new('inside', bpy.data.lights.new('inside', 'POINT')))\n"
+        "empty = bpy.data.objects.new('empty', None)\n"
+        "empty.instance_type, empty.instance_collection = 'COLLECTION', rig\n"
+        "bpy.context.scene.collection.objects.link(empty)\n"
+    )
+    said = succeeded(
+        blender(fitted.folder / "out.blend", "-P", script, "-P", FIT_LIGHTS, "--", "--server",
+                server.address, "--size", "96x54", "--lights", "sun", "lamp")
+    )
+    assert 'warning: light "inside": is in the linked collection "rig"' in said
+    assert 'light "sun"' not in said and 'light "lamp"' not in said
+
+
+def test_outputs_are_looked_at_before_anything_is_rendered(tmp_path: pathlib.Path) -> None:
+    """Without a server, which is asked after that."""
+    (tmp_path / "file").write_text("")
+    for flag, path, words in (
+        ("--json", tmp_path / "none" / "out.json", "there is no folder"),
+        ("--save", tmp_path, "is a folder"),
+        ("--keep-readback", tmp_path / "file", "--keep-readback"),
+    ):
+        done = blender("-P", FIT_LIGHTS, "--", "--demo", "--server", "127.0.0.1:1", flag, path)
+        assert done.returncode == EXIT_CODE
+        assert words in done.stdout + done.stderr
+        assert "Fra:" not in done.stdout  # Blender's word for a render
+
+
 def test_an_open_scene_is_fitted_and_otherwise_left_as_it_is(
     fitted: Fitted, server: Server, tmp_path: pathlib.Path
 ) -> None:

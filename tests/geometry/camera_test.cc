@@ -34,6 +34,21 @@ Eigen::Vector3d ProjectByHand(const Camera& camera, const Eigen::Vector3d& world
   return {screen.x(), screen.y(), point.z()};
 }
 
+// The window of an orthographic camera at 10 000 km, in centimetres.
+TEST(Camera, WindowsMayBeFarFromTheAxis) {
+  Camera camera = ValidCamera();
+  camera.orthographic = true;
+  for (const double pixels_per_unit : {1e-3, 1.0, 1e3}) {
+    camera.screen_from_camera << pixels_per_unit, 0.0, 1e9 * pixels_per_unit,  //
+        0.0, -pixels_per_unit, 1e9 * pixels_per_unit,                          //
+        0.0, 0.0, 1.0;
+    EXPECT_THAT(ValidateCamera(camera), IsOk());
+  }
+  camera.screen_from_camera.row(1) = 2.0 * camera.screen_from_camera.row(0);
+  EXPECT_THAT(ValidateCamera(camera),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("singular")));
+}
+
 TEST(Camera, WorldFromScreenInvertsDirectProjection) {
   Random random(1);
   for (int i = 0; i < 200; ++i) {

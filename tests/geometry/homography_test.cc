@@ -167,6 +167,48 @@ TEST_P(MapFromWorldTest, MapFromRayRefusesAnotherLight) {
   }
 }
 
+// In other units and about another origin it is the same map: X' = scale X + offset.
+TEST_P(MapFromWorldTest, MapFromRayTakesMatricesOfAnyUnitsAndOrigin) {
+  Random random(49);
+  for (int i = 0; i < 300; ++i) {
+    const MapCase map = RandomMapCase(random, GetParam());
+    const double scale = random.LogUniform(1e-3, 1e4);
+    const Eigen::Vector3d offset = scale * random.LogUniform(1e3, 1e8) * random.UnitVector();
+    Light light = map.light;
+    light.position = scale * map.light.position + offset;
+    Eigen::Matrix4d moved_from_world = Eigen::Matrix4d::Identity();
+    moved_from_world.topLeftCorner<3, 3>() *= scale;
+    moved_from_world.topRightCorner<3, 1>() = offset;
+    const Eigen::Matrix4d moved = map.map_from_world * moved_from_world.inverse();
+    EXPECT_THAT(MapFromRay(moved, light), testing::IsOk());
+    // And singular is singular there.
+    Eigen::Matrix4d flat = moved;
+    flat.row(1) = random.Uniform(-3.0, 3.0) * flat.row(0) + random.Uniform(-3.0, 3.0) * flat.row(3);
+    EXPECT_THAT(
+        MapFromRay(flat, light),
+        testing::StatusIs(absl::StatusCode::kInvalidArgument, ::testing::HasSubstr("singular")));
+  }
+}
+
+// Receivers at one depth: z of what is behind them by a texel's side.
+TEST(MapFromWorld, OneDepthIsWidenedAlikeInAnyUnitsAndOrigin) {
+  const Light sun = Light::Directional("sun", -Eigen::Vector3d::UnitZ());
+  for (const double scale : {1e-3, 1.0, 1e4}) {
+    for (const double origin : {0.0, 1e3, 1e6}) {
+      const Eigen::Vector3d middle = scale * Eigen::Vector3d(origin, -origin, origin);
+      // Ten texels to the unit of the scene.
+      Eigen::Matrix3d map_from_ray = Eigen::Vector3d(10.0 / scale, 10.0 / scale, 1.0).asDiagonal();
+      const double depth = sun.direction.dot(middle);
+      const Eigen::Matrix4d map_from_world =
+          MapFromWorld(map_from_ray, RayFromWorld(sun), sun, {depth, depth}, 1.0);
+      const Eigen::Vector3d behind = middle + 0.1 * scale * sun.direction;
+      const double rounding = 1e-8;  // of a depth of 1e6, in tenths
+      EXPECT_NEAR((map_from_world * middle.homogeneous()).z(), 0.0, rounding);
+      EXPECT_NEAR((map_from_world * behind.homogeneous()).z(), 1.0, rounding);
+    }
+  }
+}
+
 TEST_P(MapFromWorldTest, MapFromRayRefusesWhatIsNotFiniteOrSingular) {
   Random random(48);
   const MapCase map = RandomMapCase(random, GetParam());

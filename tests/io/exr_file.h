@@ -12,6 +12,7 @@
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfStringAttribute.h>
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -34,6 +35,7 @@ struct ExrPart {
   int data_x = 0, data_y = 0, data_width = 8, data_height = 6;  // data window
   std::vector<Channel> channels;
   std::vector<std::pair<std::string, Eigen::Matrix4d>> matrices;  // rows as stored
+  std::vector<std::pair<std::string, std::string>> strings;       // attributes
   float pixel_aspect = 1.0F;
   std::string name = "part";
   std::string view;                     // of a stereo file; empty: the part does not say
@@ -59,6 +61,7 @@ inline Imf::Header HeaderOf(const ExrPart& part) {
     for (int i = 0; i < 16; ++i) rows[i / 4][i % 4] = static_cast<float>(matrix(i / 4, i % 4));
     header.insert(name, Imf::M44fAttribute(rows));
   }
+  for (const auto& [name, text] : part.strings) header.insert(name, Imf::StringAttribute(text));
   return header;
 }
 
@@ -85,9 +88,14 @@ inline std::vector<char> NativePixels(const ExrPart& part, const Channel& channe
 }
 
 // Writes the parts; a file with several is a multi-part file.
-inline void WriteExr(const std::string& path, const std::vector<ExrPart>& parts) {
+inline void WriteExr(const std::string& path,
+                     const std::vector<ExrPart>& parts,
+                     Imf::Compression compression = Imf::ZIP_COMPRESSION) {
   std::vector<Imf::Header> headers;
-  for (const ExrPart& part : parts) headers.push_back(HeaderOf(part));
+  for (const ExrPart& part : parts) {
+    headers.push_back(HeaderOf(part));
+    headers.back().compression() = compression;
+  }
   const int count = static_cast<int>(headers.size());
   Imf::MultiPartOutputFile file(path.c_str(), headers.data(), count);
   for (int i = 0; i < count; ++i) {

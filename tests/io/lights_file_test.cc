@@ -41,15 +41,14 @@ TEST(ParseLightsJson, ErrorsNameLightFieldAndValue) {
   } cases[] = {
       {R"({"lights":[{"name":"a","position":[1,2,3]},{"name":"b"}]})",
        {"lights[1]", "\"b\"", "neither position nor direction"}},
-      {R"({"lights":[{"name":"a","position":[1,2,3],"direction":[0,0,1]}]})",
-       {"\"a\"", "both position and direction"}},
       {R"({"lights":[{"name":"a","position":[1,2]}]})", {"\"a\"", "position = [1, 2]", "want 3"}},
       {R"({"lights":[{"name":"a","direction":[1,2,3,4]}]})", {"\"a\"", "direction", "4 numbers"}},
       {R"({"lights":[{"name":"a","direction":[0,0,0]}]})", {"\"a\"", "direction", "(0, 0, 0)"}},
       {R"({"lights":[{"name":"a","position":["NaN",0,0]}]})", {"\"a\"", "position", "nan"}},
       {R"({"lights":[{"name":"a","direction":["Infinity",0,0]}]})", {"\"a\"", "direction", "inf"}},
       {R"({"lights":[{"name":"a","position":[1e999,0,0]}]})", {"JSON"}},
-      {R"({"lights":[{"name":"a","position":["left",0,0]}]})", {"lights[0].position[0]", "left"}},
+      {R"({"lights":[{"name":"a","position":["left",0,0]}]})",
+       {"lights[0]", "position[0]", "left"}},
       {R"({"lights":[{"name":"","position":[1,2,3]}]})", {"lights[0]", "name is empty"}},
       {R"({"lights":[{"name":"a","position":[1,2,3]},{"name":"a","position":[1,2,3]}]})",
        {"\"a\"", "taken"}},
@@ -66,6 +65,94 @@ TEST(ParseLightsJson, ErrorsNameLightFieldAndValue) {
   }
 }
 
+// What an exporter writes of a scene, in the words of several programs.
+TEST(ParseLightList, KindsAreUnderstoodInTheWordsOfAnyProgram) {
+  const std::string both = R"("position":[1,2,3],"direction":[0,0,-1])";
+  for (const char* type : {"SPOT",
+                           "spot",
+                           "SpotLight",
+                           "spot_light",
+                           "POINT",
+                           "pointLight",
+                           "omni",
+                           "PxrSphereLight",
+                           "light_spot"}) {
+    const auto lights = ParseLightList("{\"lights\":[{\"name\":\"a\",\"type\":\"" +
+                                       std::string(type) + "\"," + both + "}]}");
+    ASSERT_TRUE(lights.ok() && (*lights)[0].status.ok()) << type << (*lights)[0].status;
+    EXPECT_EQ((*lights)[0].light.kind, Light::Kind::kPoint) << type;
+    EXPECT_EQ((*lights)[0].light.position, Eigen::Vector3d(1, 2, 3)) << type;
+  }
+  for (const char* type : {"SUN",
+                           "directionalLight",
+                           "distant_light",
+                           "PxrDistantLight",
+                           "directional",
+                           "DistantLight"}) {
+    const auto lights = ParseLightList("{\"lights\":[{\"name\":\"a\",\"kind\":\"" +
+                                       std::string(type) + "\"," + both + "}]}");
+    ASSERT_TRUE(lights.ok() && (*lights)[0].status.ok()) << type << (*lights)[0].status;
+    EXPECT_EQ((*lights)[0].light.kind, Light::Kind::kDirectional) << type;
+    EXPECT_EQ((*lights)[0].light.direction, Eigen::Vector3d(0, 0, -1)) << type;
+  }
+  for (const char* type : {"DOME",
+                           "skydome_light",
+                           "AREA",
+                           "RectLight",
+                           "quad",
+                           "mesh",
+                           "Pxr",
+                           "light",
+                           "PxrDomeLight",
+                           "portal",
+                           "environment"}) {
+    const auto lights = ParseLightList("{\"lights\":[{\"name\":\"a\",\"type\":\"" +
+                                       std::string(type) + "\"," + both + "}]}");
+    ASSERT_TRUE(lights.ok());
+    EXPECT_TRUE(HasAll((*lights)[0].status.message(), {"\"a\"", type, "want a point"})) << type;
+  }
+}
+
+TEST(ParseLightList, WhatIsWrongWithOneLightIsItsOwn) {
+  const auto lights = ParseLightList(R"({"lights":[
+      {"name":"sun","direction":[0,0,-1]}, {"name":"spot","position":[1,2,3],"direction":[0,0,-1]},
+      {"name":"env","type":"DOME"}, {"name":"sun","position":[1,2,3]}, 7, {"position":[1,2,3]},
+      {"name":"bad","position":["left",0,0]}, {"name":"short","position":[1,2]},
+      {"name":"no","type":"SUN","position":[1,2,3]}, {"name":"odd","type":3,"position":[1,2,3]},
+      {"name":"last","position":[4,5,6],"type":null,"cone":{"angle":[40]}}]})");
+  ASSERT_TRUE(lights.ok()) << lights.status();
+  ASSERT_EQ(lights->size(), 11);
+  const std::vector<std::string> expected[] = {{},
+                                               {},
+                                               {"\"env\"", "DOME"},
+                                               {"\"sun\"", "taken"},
+                                               {"lights[4]", "want {"},
+                                               {"lights[5]", "name is empty"},
+                                               {"\"left\""},
+                                               {"\"short\"", "want 3"},
+                                               {"\"no\"", "SUN", "no direction"},
+                                               {"\"odd\"", "type is not a word"},
+                                               {}};
+  for (int i = 0; i < 11; ++i) {
+    EXPECT_EQ((*lights)[i].status.ok(), expected[i].empty()) << i << (*lights)[i].status;
+    EXPECT_TRUE(HasAll((*lights)[i].status.message(), expected[i])) << i;
+    EXPECT_EQ((*lights)[i].light.shadow_bit, i);
+  }
+  EXPECT_EQ((*lights)[10].light.position, Eigen::Vector3d(4, 5, 6));
+  EXPECT_EQ((*lights)[2].light.name, "env");
+}
+
+TEST(ParseLightList, NumbersComeThroughToTheLastBit) {
+  const auto lights = ParseLightList(
+      R"({"lights":[{"name":"a","position":[0.1,-49.28960418701172,1.7976931348623157e308]}]})");
+  ASSERT_TRUE(lights.ok());
+  // Beyond what may be summed, but read as it is.
+  EXPECT_TRUE(HasAll((*lights)[0].status.message(), {"1.79769e+308"}));
+  const auto fine =
+      ParseLightList(R"({"lights":[{"name":"a","position":[0.1,-49.28960418701172,1e-320]}]})");
+  EXPECT_EQ((*fine)[0].light.position, Eigen::Vector3d(0.1, -49.28960418701172, 1e-320));
+}
+
 std::string ManyLights(int count) {
   std::string json = R"({"lights":[)";
   for (int i = 0; i < count; ++i) {
@@ -80,6 +167,7 @@ TEST(ParseLightsJson, TakesUpTo32Lights) {
   ASSERT_TRUE(lights.ok()) << lights.status();
   EXPECT_EQ(lights->back().shadow_bit, 31);
   EXPECT_TRUE(HasAll(ParseLightsJson(ManyLights(33)).status().message(), {"33", "at most 32"}));
+  EXPECT_EQ(ParseLightList(ManyLights(500))->size(), 500);
 }
 
 TEST(ParseLightsJson, SurvivesDeepNestingAndCutFiles) {

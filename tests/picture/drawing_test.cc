@@ -62,6 +62,70 @@ TEST(HeatColor, ChangesAlongTheScale) {
   EXPECT_GT(distance(HeatColor(0), HeatColor(1)), 0.5f);
 }
 
+// Whatever the footprints are: 1 is the middle, and both ends are as far from it.
+TEST(FootprintScale, HasOneInTheMiddle) {
+  const struct {
+    float finest, coarsest;
+    double end;
+  } cases[] = {
+      {0.5F, 2.0F, 5}, {0.01F, 0.02F, 50}, {3.0F, 9.0F, 10}, {0.06F, 3.0F, 20}, {1e-5F, 1e5F, 50}};
+  for (const auto& of : cases) {
+    std::vector<float> values(500, 0.0F);  // pixels without a footprint
+    values.insert(values.end(), 500, of.finest);
+    values.insert(values.end(), 500, of.coarsest);
+    const LogScale scale = FootprintScaleFor(values);
+    EXPECT_DOUBLE_EQ(scale.max, of.end);
+    EXPECT_DOUBLE_EQ(scale.min, 1.0 / of.end);
+    EXPECT_NEAR(scale.Position(1.0), 0.5, 1e-12);
+    EXPECT_THAT(scale.Ticks(), ::testing::Contains(::testing::DoubleNear(1.0, 1e-12)));
+  }
+  const LogScale empty = FootprintScaleFor({});
+  EXPECT_NEAR(empty.Position(1.0), 0.5, 1e-12);
+}
+
+// A few outliers do not widen the scale.
+TEST(FootprintScale, LeavesOutliersOut) {
+  std::vector<float> values(10000, 1.5F);
+  values.insert(values.end(), 10, 1e6F);
+  values.insert(values.end(), 10, 1e-6F);
+  EXPECT_DOUBLE_EQ(FootprintScaleFor(values).max, 5.0);
+}
+
+// Red means coarser than a pixel and blue finer, and neither is the middle, by a margin.
+TEST(FootprintColor, DivergesAtOne) {
+  const LogScale scale = FootprintScaleFor({});
+  constexpr float kPlain = 0.25F;
+  for (const double factor : {1.6, 2.0, 3.0, 5.0, 100.0}) {
+    const Rgb coarse = scale.ColorOf(factor), fine = scale.ColorOf(1.0 / factor);
+    EXPECT_GT(coarse.r, coarse.b + kPlain) << factor;
+    EXPECT_GT(fine.b, fine.r + kPlain) << factor;
+  }
+  const Rgb one = scale.ColorOf(1.0);
+  EXPECT_LT(std::abs(one.r - one.b), 0.2F);
+  EXPECT_LT(std::abs(one.r - one.g), 0.05F);
+  for (double t = 0; t < 1; t += 0.05) {
+    const Rgb a = FootprintColor(t), b = FootprintColor(t + 0.05);
+    EXPECT_GT(std::abs(a.r - b.r) + std::abs(a.g - b.g) + std::abs(a.b - b.b), 0.02F) << t;
+  }
+}
+
+TEST(Exposure, BrightensADarkSceneToAMiddleGreyAndLeavesABrightOne) {
+  std::vector<Rgb> dark(100, Rgb{0.2F, 0.2F, 0.2F});
+  dark.resize(140, Rgb{0.9F, 0.9F, 0.9F});
+  const Exposure exposure = Exposure::For(dark);
+  EXPECT_NEAR(exposure({0.2F, 0.2F, 0.2F}).g, 0.4F, 1e-5F);
+  EXPECT_GT(exposure({0.9F, 0.9F, 0.9F}).g, 0.9F);
+  EXPECT_LE(exposure({0.9F, 0.9F, 0.9F}).g, 1.0F);
+  EXPECT_EQ(exposure({0.0F, 0.0F, 0.0F}).g, 0.0F);
+  EXPECT_EQ(exposure({1.0F, 1.0F, 1.0F}).g, 1.0F);
+  const std::vector<Rgb> bright(100, Rgb{0.5F, 0.5F, 0.5F});
+  EXPECT_EQ(Exposure::For(bright)({0.2F, 0.3F, 0.4F}).b, 0.4F);
+  EXPECT_EQ(Exposure::For({})({0.2F, 0.3F, 0.4F}).b, 0.4F);
+  // Never more than a curve that leaves surfaces their form.
+  const std::vector<Rgb> black(100, Rgb{});
+  EXPECT_LT(Exposure::For(black)({0.1F, 0.1F, 0.1F}).g, 0.4F);
+}
+
 TEST(MapView, CountsTheHullsShareOfTheMap) {
   // A square of 50 texels in a map of 100 by 50, under a matrix that only scales by 50.
   Eigen::Matrix4d map_from_world = Eigen::Matrix4d::Identity();

@@ -32,6 +32,7 @@ ProcessResult Run(const std::string& program, const std::vector<std::string>& ar
   const TemporaryFolder folder;
   const std::string out_path = folder.Path("out"), err_path = folder.Path("err");
   ProcessResult result;
+  std::fflush(nullptr);  // or what is not written yet would be written twice
   const pid_t child = fork();
   if (child < 0) {
     ADD_FAILURE() << "cannot fork";

@@ -24,6 +24,39 @@ CompareHeading Heading() {
   return heading;
 }
 
+constexpr bool kWithLegend = true;
+
+// One line otherwise: nobody reads ten of them every time.
+TEST(CompareReport, HasALegendWhereItIsAskedFor) {
+  const std::string text = CompareReportText(Heading(), ThreeLights(), false);
+  EXPECT_THAT(text,
+              ::testing::EndsWith("\n\nColumns: lightfit compare --help, or --legend here.\n"));
+  const std::string explained = CompareReportText(Heading(), ThreeLights(), false, kWithLegend);
+  EXPECT_THAT(explained, Not(HasSubstr("Columns: ")));
+  EXPECT_THAT(explained, HasSubstr("\n\nWrong pixels: where the shadow map says other"));
+}
+
+// The whole of it, for --help: whatever columns there may be.
+TEST(CompareReport, LegendNamesEveryColumn) {
+  for (const char* words : {"Wrong pixels: ",
+                            "x lightfit: ",
+                            "Outside: ",
+                            "Means of phases: ",
+                            "Foretold: ",
+                            "Energy: ",
+                            "Footprint: ",
+                            "Maps, texels: ",
+                            "Crawl, ",
+                            "Flips: ",
+                            "Ratio: ",
+                            "Mean: ",
+                            "Better: ",
+                            "Failed: ",
+                            "Dark: "}) {
+    EXPECT_THAT(CompareLegend(), HasSubstr(words));
+  }
+}
+
 TEST(CompareReport, OneLightHasATableOfItsMethods) {
   const std::string text = CompareReportText(Heading(), {ThreeLights()[0]}, false);
   EXPECT_THAT(text, HasSubstr("scene.glb: screen 750 x 750 pixels"));
@@ -34,7 +67,7 @@ TEST(CompareReport, OneLightHasATableOfItsMethods) {
 
 TEST(CompareReport, ManyLightsHaveOneTableOrMore) {
   const std::vector<LightComparison> lights = ThreeLights();
-  const std::string totals = CompareReportText(Heading(), lights, false);
+  const std::string totals = CompareReportText(Heading(), lights, false, kWithLegend);
   EXPECT_THAT(totals, HasSubstr("3 lights"));
   EXPECT_THAT(totals, HasSubstr("geometric mean"));
   EXPECT_THAT(totals, Not(HasSubstr("never")));
@@ -59,7 +92,7 @@ TEST(CompareReport, CrawlHasColumnsOnlyWhereItIsMeasured) {
   lights[0].rows[0].crawl = crawl;
   CompareHeading heading = Heading();
   heading.next = "frame 7 of cameras.json";
-  const std::string text = CompareReportText(heading, lights, false);
+  const std::string text = CompareReportText(heading, lights, false, kWithLegend);
   EXPECT_THAT(text, HasSubstr("crawl: to the next frame, frame 7 of cameras.json\n"));
   EXPECT_THAT(text, HasSubstr(" texels  pixels  % flips\n"));
   EXPECT_THAT(text, HasSubstr("   0.250       -     1.50\n"));  // no edge in view
@@ -81,9 +114,9 @@ TEST(CompareReport, SaysThatCountsAreMeans) {
   CompareHeading heading = Heading();
   EXPECT_THAT(CompareReportText(heading, ThreeLights(), false), Not(HasSubstr("mean of")));
   heading.phases = 4;
-  const std::string text = CompareReportText(heading, ThreeLights(), false);
+  const std::string text = CompareReportText(heading, ThreeLights(), false, kWithLegend);
   EXPECT_THAT(text, HasSubstr("map 400 x 400 texels, mean of 4 phases\n"));
-  EXPECT_THAT(text, HasSubstr("means of 4 phases: of the map moved by parts of a texel"));
+  EXPECT_THAT(text, HasSubstr("\nMeans of phases: of the map moved by parts of a texel"));
   heading.screen_width = 0;  // a read-back alone has no counts
   EXPECT_THAT(CompareReportText(heading, ThreeLights(), false), Not(HasSubstr("phases")));
 }
@@ -98,7 +131,7 @@ TEST(CompareReport, ShowsBordersWhereAnyIsDark) {
   EXPECT_THAT(one, HasSubstr("lightfit    dark "));
   EXPECT_THAT(one, HasSubstr("Border: "));
   EXPECT_THAT(one, Not(HasSubstr("Dark: ")));
-  const std::string totals = CompareReportText(Heading(), lights, false);
+  const std::string totals = CompareReportText(Heading(), lights, false, kWithLegend);
   EXPECT_THAT(totals, HasSubstr("counted  failed  dark\n"));
   EXPECT_THAT(totals, HasSubstr("        2       1     0\n"));  // focused
   EXPECT_THAT(totals, HasSubstr("        3       0     1\n"));  // lightfit
@@ -117,7 +150,7 @@ TEST(CompareReport, PlansHaveColumnsOfTheirOwn) {
   CompareHeading heading = Heading();
   heading.has_plans = true;
   heading.maps = "up to 4 maps for each light, 800 texels in all";
-  const std::string text = CompareReportText(heading, lights, false);
+  const std::string text = CompareReportText(heading, lights, false, kWithLegend);
   EXPECT_THAT(text, HasSubstr("; up to 4 maps for each light, 800 texels in all\n"));
   EXPECT_THAT(text, HasSubstr("maps  texels "));
   EXPECT_THAT(text, HasSubstr("ZP4          4     800 "));

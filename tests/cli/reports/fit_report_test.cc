@@ -134,6 +134,22 @@ TEST(FitReport, ABorderThatOnlyAnotherMapHasShowsNone) {
   EXPECT_THAT(Report({comparison}), Not(HasSubstr("far outside")));
 }
 
+TEST(FitReport, HasALegendWhereItIsAskedFor) {
+  const std::vector<FitComparison> comparisons = {Fitted("sun", 0.03, 0.02, 0.01)};
+  const std::string text = Report(comparisons);
+  EXPECT_THAT(text, HasSubstr("\n\nColumns: lightfit fit --help, or --legend here.\n"));
+  EXPECT_THAT(text, Not(HasSubstr("Footprint: ")));
+  const Square square(180);
+  const std::string explained = FitReportText(
+      "a.exr", square.readback, {1024, 1024}, FitOptions(), comparisons, /*has_legend=*/true);
+  EXPECT_THAT(explained, HasSubstr("\n\n" + FitLegend()));
+  EXPECT_THAT(explained, Not(HasSubstr("Columns: ")));
+  for (const char* words :
+       {"Wrong: ", "Fewer than: ", "Footprint: ", "Time: ", "Focused: ", "dark"}) {
+    EXPECT_THAT(FitLegend(), HasSubstr(words));
+  }
+}
+
 // Within a factor of kSameForecast either way, and in figures beyond.
 TEST(FitReport, SaysSameWhereForecastsCannotTellMapsApart) {
   Random random(902);

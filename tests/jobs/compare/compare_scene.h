@@ -9,7 +9,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "geometry/camera.h"
-#include "render/scene.h"
+#include "scenes/scene.h"
 
 namespace lightfit {
 

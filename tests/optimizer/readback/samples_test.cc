@@ -57,9 +57,9 @@ TEST(SelectSamples, CountsBackgroundAndItsNeighbours) {
   const SampleCounts counts = CountSamples(readback, kSun);
   EXPECT_EQ(counts.receivers, 40 * 30 - 1);
   EXPECT_EQ(counts.candidates, kNumCandidates);
-  EXPECT_EQ(counts.background, 1);
-  EXPECT_EQ(counts.discontinuity,
-            3);  // left, above and below; the one to the right is no candidate
+  // The pixel itself, and the one to its left, which has shadow on no other side.
+  EXPECT_EQ(counts.background, 2);
+  EXPECT_EQ(counts.discontinuity, 2);  // above and below; the one to the right is no candidate
   EXPECT_EQ(counts.used, kNumCandidates - 4);
 }
 
@@ -68,9 +68,9 @@ TEST(SelectSamples, UsesOutlinesUnlessToldNotTo) {
   PlaneReadback readback = FloorWithVerticalEdge();
   readback.depth[readback.Index(20, 15)] = 1e10f;
   const SampleCounts beside_hole = CountSamples(readback, kSun, SampleOptions());
-  EXPECT_EQ(beside_hole.background, 1);
+  EXPECT_EQ(beside_hole.background, 2);
   EXPECT_EQ(beside_hole.discontinuity, 0);
-  EXPECT_EQ(beside_hole.used, kNumCandidates - 1);
+  EXPECT_EQ(beside_hole.used, kNumCandidates - 2);
   for (int y = 0; y < 30; ++y) {
     for (int x = 20; x < 40; ++x) readback.depth[readback.Index(x, y)] *= 1.5f;
   }
@@ -83,8 +83,27 @@ TEST(SelectSamples, CountsInvalidDepthAsBackground) {
   readback.depth[readback.Index(20, 15)] = std::nanf("");
   const SampleCounts counts = CountSamples(readback, kSun);
   EXPECT_EQ(counts.invalid_depth, 1);
-  EXPECT_EQ(counts.background, 1);
-  EXPECT_EQ(counts.discontinuity, 3);
+  EXPECT_EQ(counts.background, 2);
+  EXPECT_EQ(counts.discontinuity, 2);
+}
+
+// What renderers write there, 0 or 1, means nothing.
+TEST(SelectSamples, ShadowOfTheBackgroundChangesNothing) {
+  PlaneReadback readback = FloorWithVerticalEdge();
+  for (int y = 0; y < 30; ++y) {
+    for (int x = 0; x < 40; ++x) {
+      if (x > 28 || (x > 15 && y < 5)) readback.depth[readback.Index(x, y)] = 1e10f;
+    }
+  }
+  const SampleCounts counts = CountSamples(readback, kSun, SampleOptions());
+  for (size_t i = 0; i < readback.depth.size(); ++i) {
+    if (readback.depth[i] == 1e10f) readback.shadow_bits[i] ^= 1;
+  }
+  const SampleCounts turned = CountSamples(readback, kSun, SampleOptions());
+  EXPECT_EQ(turned.candidates, counts.candidates);
+  EXPECT_EQ(turned.background, counts.background);
+  EXPECT_EQ(turned.used, counts.used);
+  EXPECT_EQ(counts.used, 2 * (30 - 2 - 4));  // the edge at x = 20, and no outline
 }
 
 TEST(SelectSamples, CountsDepthDiscontinuities) {

@@ -9,7 +9,7 @@
 
 #include "partition/shipped/paraboloid_edges.h"
 #include "render/clearance.h"
-#include "render/scene.h"
+#include "scenes/scene.h"
 
 namespace lightfit::testing {
 
