@@ -128,6 +128,7 @@ absl::StatusOr<v1::EvaluateResult> AnswerEvaluate(const v1::EvaluateRequest& req
       ReadbackView::Of(request.readback(), request.lights_size(), context.limits);
   if (!readback.ok()) return readback.status();
   std::optional<ReadbackView> before;
+  CheckedReadback before_checked;
   if (request.has_before()) {
     absl::StatusOr<ReadbackView> view =
         ReadbackView::Of(request.before(), request.lights_size(), context.limits);
@@ -135,6 +136,7 @@ absl::StatusOr<v1::EvaluateResult> AnswerEvaluate(const v1::EvaluateRequest& req
     if (status.ok()) status = ValidateReadback(view->view());
     if (!status.ok()) return InFile("before", status);
     before.emplace(*std::move(view));
+    before_checked = CheckReadback(before->view(), *lights, /*is_tracked=*/true);
   }
 
   std::vector<Light> usable;
@@ -148,8 +150,8 @@ absl::StatusOr<v1::EvaluateResult> AnswerEvaluate(const v1::EvaluateRequest& req
   v1::EvaluateResult result;
   for (int i = 0; i < request.matrices_size(); ++i) {
     const v1::CandidateMatrix& candidate = request.matrices(i);
-    absl::StatusOr<v1::Evaluation> evaluation =
-        Evaluate(candidate, *lights, surfaces, before ? &before->view() : nullptr, *options);
+    absl::StatusOr<v1::Evaluation> evaluation = Evaluate(
+        candidate, *lights, surfaces, before ? &before_checked.readback : nullptr, *options);
     if (StopRequested()) return StoppedError();
     v1::Evaluation& entry = *result.add_evaluations();
     if (evaluation.ok()) entry = *evaluation;

@@ -6,9 +6,11 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "base/frame_number.h"
 #include "base/stop.h"
 #include "base/text_file.h"
 #include "base/version.h"
+#include "calls/checked_readback.h"
 #include "calls/pixel_buffer.h"
 #include "calls/request_fields.h"
 #include "calls/request_lights.h"
@@ -16,7 +18,9 @@
 #include "calls/summary_request.h"
 #include "io/summary_file.h"
 #include "optimizer/fit.h"
+#include "wire/frame_identity.h"
 #include "wire/summary_proto.h"
+#include "wire/utf8.h"
 
 namespace lightfit {
 namespace {
@@ -64,8 +68,17 @@ absl::StatusOr<Summary> SummarizeLight(const RequestLight& light,
                                 : Summarize(*view, options);
 }
 
+absl::StatusOr<std::optional<FrameNumber>> NumberOf(const v1::SummarizeRequest& request) {
+  if (!request.has_frame_number()) return std::optional<FrameNumber>();
+  const std::optional<FrameNumber> number = FrameNumberOf(request.frame_number());
+  if (number.has_value()) return number;
+  return absl::InvalidArgumentError(
+      absl::StrCat("frame_number = ", request.frame_number(), ", want one of up to 12 digits"));
+}
+
 absl::StatusOr<SummarySet> SummaryOfReadback(const v1::SummarizeRequest& request,
-                                             const CallContext& context) {
+                                             const CallContext& context,
+                                             std::vector<std::string>* warnings) {
   const absl::StatusOr<std::vector<RequestLight>> lights = LightsOfRequest(request.lights());
   if (!lights.ok()) return lights.status();
   const absl::StatusOr<FitOptions> options = OptionsOfRequest(request.options());
@@ -76,13 +89,17 @@ absl::StatusOr<SummarySet> SummaryOfReadback(const v1::SummarizeRequest& request
       ReadbackView::Of(request.readback(), request.lights_size(), context.limits);
   if (!readback.ok()) return readback.status();
   if (absl::Status status = ValidateReadback(readback->view()); !status.ok()) return status;
+  const absl::StatusOr<std::optional<FrameNumber>> number = NumberOf(request);
+  if (!number.ok()) return number.status();
+  const CheckedReadback checked = CheckReadback(readback->view(), *lights);
+  *warnings = checked.warnings;
 
   std::vector<Light> usable;
   for (const RequestLight& light : *lights) {
     if (light.status.ok()) usable.push_back(light.light);
   }
   const absl::StatusOr<Surfaces> surfaces =
-      FindSurfaces(readback->view(), LightMask(usable), options->samples);
+      FindSurfaces(checked.readback, LightMask(usable), options->samples);
   const std::string& source = request.readback().source();
   const bool weighs = !request.weigh_by().empty();
   std::vector<LightSummary> summaries;
@@ -96,7 +113,7 @@ absl::StatusOr<SummarySet> SummaryOfReadback(const v1::SummarizeRequest& request
     summaries.back().weighed_in = (*maps)[i];
     if (StopRequested()) return StoppedError();
   }
-  return MakeSummarySet(*options, std::move(summaries));
+  return MakeSummarySet(*options, std::move(summaries), IdentityOf(readback->view(), *number));
 }
 
 }  // namespace
@@ -111,8 +128,9 @@ absl::StatusOr<v1::SummarizeResult> AnswerSummarize(const v1::SummarizeRequest& 
     sum = SummariesOfRequest(request.summaries(), request.summary_files(), context.limits);
     if (!sum.ok()) return sum.status();
   }
+  std::vector<std::string> warnings;
   if (request.has_readback()) {
-    absl::StatusOr<SummarySet> own = SummaryOfReadback(request, context);
+    absl::StatusOr<SummarySet> own = SummaryOfReadback(request, context, &warnings);
     if (!own.ok()) return own.status();
     if (!has_summaries) {
       sum = *std::move(own);
@@ -128,6 +146,7 @@ absl::StatusOr<v1::SummarizeResult> AnswerSummarize(const v1::SummarizeRequest& 
   result.set_summary_file(*bytes);
   *result.mutable_summary() = SummarySetToProto(*sum);
   result.mutable_summary()->set_writer(writer);
+  for (const std::string& warning : warnings) result.add_warnings(Utf8Text(warning));
   return result;
 }
 

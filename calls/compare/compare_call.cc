@@ -8,6 +8,7 @@
 #include "absl/strings/str_format.h"
 #include "base/stop.h"
 #include "base/text_file.h"
+#include "calls/checked_readback.h"
 #include "calls/pixel_buffer.h"
 #include "calls/request_fields.h"
 #include "calls/request_lights.h"
@@ -16,6 +17,7 @@
 #include "jobs/compare/rows.h"
 #include "jobs/compare/stage.h"
 #include "wire/proto_json.h"
+#include "wire/utf8.h"
 
 namespace lightfit {
 namespace {
@@ -88,7 +90,8 @@ absl::StatusOr<v1::Comparison> AnswerCompare(const v1::CompareRequest& request,
       ReadbackView::Of(request.readback(), request.lights_size(), context.limits);
   if (!readback.ok()) return readback.status();
   if (absl::Status status = ValidateReadback(readback->view()); !status.ok()) return status;
-  const absl::StatusOr<CompareStage> stage = MakeStage(readback->view());
+  const CheckedReadback checked = CheckReadback(readback->view(), *lights);
+  const absl::StatusOr<CompareStage> stage = MakeStage(checked.readback);
   if (!stage.ok()) return stage.status();
 
   std::vector<LightComparison> comparisons;
@@ -99,6 +102,7 @@ absl::StatusOr<v1::Comparison> AnswerCompare(const v1::CompareRequest& request,
   }
   v1::Comparison result =
       ComparisonToProto(request.readback().source(), *stage, options, comparisons);
+  for (const std::string& warning : checked.warnings) result.add_warnings(Utf8Text(warning));
   for (size_t i = 0; i < lights->size(); ++i) {
     if (!(*lights)[i].status.ok()) result.mutable_lights(static_cast<int>(i))->clear_light();
   }

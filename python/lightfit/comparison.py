@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import dataclasses
+import warnings
 from typing import Dict, List, Optional
 
+from lightfit.errors import LightfitWarning
 from lightfit.messages import Footprint, Matrix, footprint_of, lower_word, matrix_of, optional
 from lightfit.result import Samples, Status, samples_of, status_of
 from lightfit.v1 import comparison_pb2, matrix_pb2
@@ -108,6 +110,8 @@ class Comparison:
 
     @classmethod
     def of(cls, message: comparison_pb2.Comparison) -> "Comparison":
+        for text in message.warnings:
+            warnings.warn(text, LightfitWarning, stacklevel=4)
         totals = {
             total.method: ComparedTotal(
                 total.method,

@@ -172,7 +172,7 @@ class ShotCalls(SummaryCalls):
         self, frame: FrameParts, weigh_by: Optional[FitResult], job: _Job
     ) -> FrameSummary:
         return self._summarize(
-            frame.parts, (), weigh_by, job.options, job.timeout_s, job.request_id
+            frame.parts, frame.number, (), weigh_by, job.options, job.timeout_s, job.request_id
         )
 
     def _whole(

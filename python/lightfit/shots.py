@@ -29,6 +29,7 @@ class Frame:
     lights: Optional[Lights] = None
     facing: Any = None
     mapped: Any = None
+    background: Optional[float] = None
     source: str = ""
 
 
@@ -133,7 +134,15 @@ def _parts_of_arrays(frame: Frame, lights: Optional[Lights]) -> ReadbackParts:
     if own is None:
         raise InvalidArgumentError("lights: none, want those of the shot, or of each frame")
     return readback_parts(
-        frame.depth, frame.shadow, frame.camera, own, frame.source, frame.facing, frame.mapped
+        frame.depth,
+        frame.shadow,
+        frame.camera,
+        own,
+        frame.source,
+        frame.facing,
+        frame.mapped,
+        None,
+        frame.background,
     )
 
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 import dataclasses
 import os
 import tempfile
+import warnings
 from pathlib import Path
 from typing import Dict, Sequence, Union
 
-from lightfit.errors import Code, InvalidArgumentError
+from lightfit.errors import Code, InvalidArgumentError, LightfitWarning
 from lightfit.inputs import Path_
 from lightfit.v1 import service_pb2, summary_pb2
 
@@ -61,6 +62,8 @@ class FrameSummary:
 
     @classmethod
     def of(cls, message: service_pb2.SummarizeResult) -> "FrameSummary":
+        for text in message.warnings:
+            warnings.warn(text, LightfitWarning, stacklevel=4)
         return cls(message.summary_file, message.summary)
 
 

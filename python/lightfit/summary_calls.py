@@ -43,6 +43,8 @@ class SummaryCalls(PlanCalls):
         options: Optional[Options] = None,
         facing: Any = None,
         mapped: Any = None,
+        background: Optional[float] = None,
+        number: Optional[float] = None,
         source: str = "",
         timeout_s: Optional[float] = None,
         request_id: Optional[str] = None,
@@ -50,7 +52,10 @@ class SummaryCalls(PlanCalls):
         """What a read-back has to say about its lights, in some kilobytes: for `fit_summary`, which
         finds one matrix per light for all the frames whose summaries it is given.
 
-        depth, shadow, camera, lights, facing, mapped: as for `fit`; none with summaries alone.
+        depth, shadow, camera, lights, facing, mapped, background: as for `fit`; none with summaries
+            alone.
+        number: of the frame on the time line, so that none is counted twice. None: not known; frames
+            of the same depth and camera are then taken for one.
         summaries: to be added to it: results of `summarize`, files by name, or their bytes.
         weigh_by: the l1 metrics weigh samples by a map: each light's own best of this read-back, or
             these, a FitResult of a first round or Candidates, one for each light.
@@ -60,14 +65,17 @@ class SummaryCalls(PlanCalls):
             total = lightfit.summarize(summaries=[lightfit.summarize(*frame) for frame in frames])
             result = lightfit.fit_summary([total], (2048, 2048))
         """
-        given = optional_parts(depth, shadow, camera, lights, source, facing, mapped)
-        return self._summarize(given, summaries, weigh_by, options, timeout_s, request_id)
+        given = optional_parts(
+            depth, shadow, camera, lights, source, facing, mapped, None, background
+        )
+        return self._summarize(given, number, summaries, weigh_by, options, timeout_s, request_id)
 
     def summarize_exr(
         self,
         path: Path_,
         lights: Lights,
         *,
+        number: Optional[float] = None,
         summaries: Sequence[Summary] = (),
         weigh_by: Optional[Matrices] = None,
         options: Optional[Options] = None,
@@ -82,7 +90,7 @@ class SummaryCalls(PlanCalls):
         parts = _exr_parts(path, lights, exr)
         # Folders differ between the machines of a farm, and would make files differ.
         parts.header.source = os.path.basename(os.fspath(path))
-        return self._summarize(parts, summaries, weigh_by, options, timeout_s, request_id)
+        return self._summarize(parts, number, summaries, weigh_by, options, timeout_s, request_id)
 
     def compare(
         self,
@@ -97,6 +105,7 @@ class SummaryCalls(PlanCalls):
         facing: Any = None,
         mapped: Any = None,
         cover: Optional[FineCover] = None,
+        background: Optional[float] = None,
         source: str = "",
         timeout_s: Optional[float] = None,
         request_id: Optional[str] = None,
@@ -111,7 +120,9 @@ class SummaryCalls(PlanCalls):
 
             print(lightfit.compare(depth, shadow, camera, lights, (1024, 1024)))
         """
-        parts = readback_parts(depth, shadow, camera, lights, source, facing, mapped, cover)
+        parts = readback_parts(
+            depth, shadow, camera, lights, source, facing, mapped, cover, background
+        )
         return self._compare(parts, map_size, given, options, timeout_s, request_id)
 
     def compare_exr(
@@ -136,6 +147,7 @@ class SummaryCalls(PlanCalls):
     def _summarize(
         self,
         parts: Optional[ReadbackParts],
+        number: Optional[float],
         summaries: Sequence[Summary],
         weigh_by: Optional[Matrices],
         options: Optional[Options],
@@ -147,6 +159,8 @@ class SummaryCalls(PlanCalls):
             request.readback.CopyFrom(parts.header)
             request.lights.extend(parts.lights)
             parts.pixels.fill(request.readback)
+        if number is not None:
+            request.frame_number = float(number)
         add_summaries(summaries, request)
         if weigh_by is not None:
             request.weigh_by.extend(_candidates("weigh_by", weigh_by))

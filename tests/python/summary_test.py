@@ -113,6 +113,29 @@ def test_a_light_that_shows_nothing_is_counted(calls: Any, arguments: Any) -> No
         assert key.frames_without == 1 and "bare" in key.reason
 
 
+def test_a_frame_is_not_counted_twice(calls: Any) -> None:
+    frame = large_readback(96, 64)
+    numbered = [calls.summarize(*frame, number=number) for number in (1001, 1002)]  # a still shot
+    assert calls.summarize(summaries=numbered).lights["sun"].frames == 2
+    with pytest.raises(ValueError, match="frame 1001 is in what it is to be added to already"):
+        calls.summarize(summaries=[*numbered, numbered[0]])
+    with pytest.raises(ValueError, match="a frame without a number"):
+        calls.summarize(summaries=[calls.summarize(*frame)] * 2)
+
+
+def test_a_finite_sky_is_said_to_be_taken_for_background(calls: Any, arguments: Any) -> None:
+    depth, shadow, camera, lights = arguments
+    sky = numpy.where(depth > 1e9, numpy.float32(65504), depth)
+    want = calls.summarize(*arguments).message.lights
+    with pytest.warns(lightfit.LightfitWarning, match="65504"):
+        assert calls.summarize(sky, shadow, camera, lights).message.lights == want
+    assert calls.summarize(sky, shadow, camera, lights, background=65504).message.lights == want
+    plain = calls.compare(*arguments, MAP)
+    with pytest.warns(lightfit.LightfitWarning, match="65504"):
+        found = calls.compare(sky, shadow, camera, lights, MAP)
+    assert found.message.lights == plain.message.lights
+
+
 @pytest.mark.parametrize("arguments_", [{}, {"summaries": ()}])
 def test_nothing_to_summarize_is_refused(calls: Any, arguments_: Any) -> None:
     with pytest.raises(ValueError, match="readback: none, and no summaries either"):
