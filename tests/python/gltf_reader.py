@@ -206,7 +206,8 @@ def pixel_rays(
     slope = 2.0 * numpy.tan(numpy.radians(fov_deg) / 2) / height
     x = (numpy.arange(width) + 0.5 - width / 2) * slope
     y = -(numpy.arange(height) + 0.5 - height / 2) * slope
-    return forward + x[None, :, None] * right + y[:, None, None] * above
+    rays: Array = forward + x[None, :, None] * right + y[:, None, None] * above
+    return rays
 
 
 def depth_image(
