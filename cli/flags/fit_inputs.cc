@@ -8,6 +8,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "base/suggest.h"
+#include "base/text_file.h"
 #include "base/verbose.h"
 #include "cli/flags/frame_inputs.h"
 #include "cli/flags/standard_streams.h"
