@@ -3,7 +3,7 @@
 // The nodes of a glTF file and where they stand.
 // In:   a Document.
 // Out:  each node's matrix, CESIUM_RTC included; the nodes that the default scene shows, in the
-// order of the file.
+//       order of the file.
 #pragma once
 
 #include <Eigen/Core>
