@@ -17,7 +17,7 @@
 #include "cli/flags/fit_inputs.h"
 #include "cli/reports/fit_report.h"
 #include "cli/reports/plan_report.h"
-#include "io/readback_notes.h"
+#include "io/notes/readback_notes.h"
 #include "jobs/fit_comparison.h"
 #include "picture/fit_page.h"
 #include "picture/png.h"

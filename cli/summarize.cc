@@ -22,7 +22,7 @@
 #include "cli/exit_code.h"
 #include "cli/flags/fit_inputs.h"
 #include "cli/summary_inputs.h"
-#include "io/readback_notes.h"
+#include "io/notes/readback_notes.h"
 #include "jobs/fit_summary.h"
 #include "optimizer/fit.h"
 #include "wire/plan_proto.h"

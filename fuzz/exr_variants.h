@@ -8,8 +8,8 @@
 
 namespace lightfit::fuzz {
 
-// Writes FOLDER/COMPRESSION and the like for each of the forms of the file at `path`, whose first two channels
-// they take. False when one cannot be written; the reason goes to the standard error.
+// Writes FOLDER/COMPRESSION and the like for each of the forms of the file at `path`, whose first
+// two channels they take. False when one cannot be written; the reason goes to the standard error.
 bool WriteExrVariants(const std::string& path, const std::string& folder);
 
 }  // namespace lightfit::fuzz

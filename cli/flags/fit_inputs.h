@@ -10,8 +10,8 @@
 #include "cli/flags/fit_flags.h"
 #include "geometry/light.h"
 #include "io/fine_cover_exr.h"
+#include "io/notes/readback_notes.h"
 #include "io/readback_exr.h"
-#include "io/readback_notes.h"
 
 namespace lightfit::cli {
 
