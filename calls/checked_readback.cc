@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "geometry/camera.h"
-#include "io/readback_warnings.h"
+#include "io/notes/readback_warnings.h"
 #include "wire/utf8.h"
 
 namespace lightfit {

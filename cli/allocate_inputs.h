@@ -9,8 +9,8 @@
 
 #include "absl/status/statusor.h"
 #include "cli/flags/allocate_flags.h"
+#include "io/notes/readback_notes.h"
 #include "io/readback_exr.h"
-#include "io/readback_notes.h"
 #include "jobs/allocate_lights.h"
 
 namespace lightfit::cli {

@@ -25,7 +25,7 @@
 #include "cli/reports/legend.h"
 #include "cli/reports/plan_report.h"
 #include "io/image_exr_write.h"
-#include "io/readback_notes.h"
+#include "io/notes/readback_notes.h"
 #include "jobs/fit_comparison.h"
 #include "jobs/fit_images.h"
 #include "picture/fit_page.h"

@@ -23,7 +23,7 @@
 #include "cli/flags/frame_inputs.h"
 #include "cli/summary_inputs.h"
 #include "cli/summary_list.h"
-#include "io/readback_notes.h"
+#include "io/notes/readback_notes.h"
 #include "jobs/add_summaries.h"
 #include "jobs/fit_summary.h"
 #include "jobs/shot/judge.h"

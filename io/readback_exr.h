@@ -28,8 +28,8 @@
 #include "geometry/camera.h"
 #include "geometry/light.h"
 #include "io/camera_exr.h"
+#include "io/notes/readback_warnings.h"
 #include "io/readback_origin.h"
-#include "io/readback_warnings.h"
 #include "optimizer/readback/readback.h"
 
 namespace lightfit {
@@ -84,7 +84,7 @@ struct ReadbackFile {
   // there are, when it is the shadow that is missing). The other lights are good to use.
   std::vector<absl::Status> light_status;
 
-  // What may be a mistake (io/readback_warnings.h).
+  // What may be a mistake (io/notes/readback_warnings.h).
   std::vector<ReadbackWarning> warnings;
 
   // Refers to this object's buffers.

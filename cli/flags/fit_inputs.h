@@ -11,8 +11,8 @@
 #include "geometry/light.h"
 #include "io/fine_cover_exr.h"
 #include "io/lights_file.h"
+#include "io/notes/readback_notes.h"
 #include "io/readback_exr.h"
-#include "io/readback_notes.h"
 
 namespace lightfit::cli {
 

@@ -17,7 +17,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "base/progress.h"
-#include "io/readback_notes.h"
+#include "io/notes/readback_notes.h"
 #include "jobs/shot/job.h"
 #include "jobs/shot/key.h"
 #include "jobs/shot/result.h"

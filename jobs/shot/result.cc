@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "io/readback_notes.h"
+#include "io/notes/readback_notes.h"
 #include "wire/crawl_proto.h"
 #include "wire/plan_shot_proto.h"
 #include "wire/shot_proto.h"

@@ -284,7 +284,7 @@ def _array(values: Any, field: str) -> NDArray[Any]:
             f"{field}: is a {type(values).__name__}, want a numpy array (numpy.asarray)"
         )
     if isinstance(values, numpy.ma.MaskedArray):
-        if numpy.ma.is_masked(values):
+        if numpy.any(values.mask):
             hint = f"{field}.filled(0)"
             if values.dtype.kind == "f":
                 hint = f"{field}.filled(numpy.inf), or the depth of the far plane"
@@ -292,7 +292,7 @@ def _array(values: Any, field: str) -> NDArray[Any]:
                 f"{field}: is a masked array, and what its mask hides is no background by itself: "
                 f"want {hint}"
             )
-        return numpy.ma.getdata(values)
+        return numpy.asarray(values.data)
     return values
 
 

@@ -1,4 +1,4 @@
-#include "io/readback_warnings.h"
+#include "io/notes/readback_warnings.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,9 +6,9 @@
 #include <Eigen/Geometry>
 
 #include "io/lights_file.h"
+#include "io/notes/readback_notes.h"
 #include "io/readback_exr.h"
 #include "io/readback_exr_write.h"
-#include "io/readback_notes.h"
 #include "tests/io/exr_file.h"
 #include "tests/io/testing.h"
 #include "tests/testing/box_scene.h"

@@ -1,4 +1,4 @@
-// io/readback_notes.h
+// io/notes/readback_notes.h
 //
 // What is to be said of the read-backs that a job reads: once, where many are alike.
 // In:   each read-back's origin and warnings.

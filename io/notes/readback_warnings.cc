@@ -1,4 +1,4 @@
-#include "io/readback_warnings.h"
+#include "io/notes/readback_warnings.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

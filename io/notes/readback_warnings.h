@@ -1,4 +1,4 @@
-// io/readback_warnings.h
+// io/notes/readback_warnings.h
 //
 // Inputs that are wrong but plausible: read as they are, and told.
 // In:   a read-back and its lights; what its file says of both.

@@ -1,4 +1,4 @@
-#include "io/readback_notes.h"
+#include "io/notes/readback_notes.h"
 
 #include <algorithm>
 #include <cmath>
