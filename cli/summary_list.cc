@@ -22,6 +22,7 @@ absl::StatusOr<std::vector<std::string>> FilesOf(const std::string& input) {
   if (IsFilePattern(input)) {
     const absl::StatusOr<std::vector<MatchedFile>> files = FilesMatching(input);
     if (!files.ok()) return files.status();
+    paths.reserve(files->size());
     for (const MatchedFile& file : *files) paths.push_back(file.path);
     return paths;
   }
@@ -31,6 +32,7 @@ absl::StatusOr<std::vector<std::string>> FilesOf(const std::string& input) {
   if (!std::filesystem::is_directory(input, error) && extension != ".txt") return {{input}};
   const absl::StatusOr<FrameList> list = ListFrames({input});
   if (!list.ok()) return list.status();
+  paths.reserve(list->frames.size());
   for (const ShotFrame& frame : list->frames) paths.push_back(frame.path);
   return paths;
 }

@@ -62,6 +62,7 @@ LightFrames::Entry* LightFrames::EntryFor(const std::optional<FrameNumber>& numb
     if (is_new) entries_.push_back({number, {}});
     return &entries_[found->second];
   }
+  has_places_ = true;
   while (entries_.size() <= place) entries_.emplace_back();
   return &entries_[place];
 }
@@ -119,10 +120,7 @@ absl::StatusOr<std::optional<LightFrames>> LightFrames::Parse(absl::string_view 
   if (HasFrames(file)) {
     if (absl::Status status = frames.AddFramesOfFile(file); !status.ok()) return status;
   }
-  const auto is_numbered = [](const Entry& entry) { return entry.number.has_value(); };
-  const auto num_numbered =
-      std::count_if(frames.entries_.begin(), frames.entries_.end(), is_numbered);
-  if (num_numbered > 0 && num_numbered < static_cast<int64_t>(frames.entries_.size())) {
+  if (frames.has_places_ && !frames.entry_of_.empty()) {
     return absl::InvalidArgumentError(
         "frames: some say which they are (\"frame\": 1001) and some do not, want all or none");
   }
@@ -140,6 +138,7 @@ absl::StatusOr<std::optional<LightFrames>> LightFrames::Read(const std::string& 
 
 std::vector<std::optional<FrameNumber>> LightFrames::numbers() const {
   std::vector<std::optional<FrameNumber>> numbers;
+  numbers.reserve(entries_.size());
   for (const Entry& entry : entries_) numbers.push_back(entry.number);
   return numbers;
 }

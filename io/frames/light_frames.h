@@ -59,6 +59,7 @@ class LightFrames {
   LightsByName base_;               // what is said of them without a frame
   std::vector<Entry> entries_;
   std::map<FrameNumber, size_t> entry_of_;  // by number, of those that have one
+  bool has_places_ = false;                 // whether any was without
 };
 
 }  // namespace lightfit

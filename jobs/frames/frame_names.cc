@@ -78,6 +78,7 @@ bool HasGroupBefore(absl::string_view name, const std::vector<Group>& groups, in
 std::vector<int> ChosenGroups(absl::Span<const std::string> names,
                               const std::vector<std::vector<Group>>& groups) {
   std::vector<int> chosen;
+  chosen.reserve(names.size());
   for (const std::vector<Group>& own : groups) chosen.push_back(LikelyGroup(own));
   if (names.size() < 2 || chosen[0] < 0 || !HaveOnePattern(names, groups)) return chosen;
   const auto varies = [&](int group) {
@@ -166,6 +167,7 @@ void FindFurtherMinus(std::vector<FrameName>* result) {
 
 std::vector<FrameName> ReadFrameNames(absl::Span<const std::string> names) {
   std::vector<std::vector<Group>> groups;
+  groups.reserve(names.size());
   for (const std::string& name : names) groups.push_back(GroupsOf(name));
   const std::vector<int> chosen = ChosenGroups(names, groups);
   std::vector<FrameName> whole, between;

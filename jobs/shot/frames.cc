@@ -108,6 +108,7 @@ bool HasTwoAlike(const std::vector<std::string>& names) {
 
 std::vector<std::string> StemsOf(const std::vector<MatchedFile>& files) {
   std::vector<std::string> names;
+  names.reserve(files.size());
   for (const MatchedFile& file : files) {
     names.push_back(std::filesystem::path(file.path).stem().string());
   }
@@ -116,6 +117,7 @@ std::vector<std::string> StemsOf(const std::vector<MatchedFile>& files) {
 
 std::vector<std::string> FoldersOf(const std::vector<MatchedFile>& files) {
   std::vector<std::string> names;
+  names.reserve(files.size());
   for (const MatchedFile& file : files) {
     names.push_back(std::filesystem::path(file.path).parent_path().filename().string());
   }
@@ -201,6 +203,7 @@ absl::Status OrderByNumber(bool was_given_in_order, FrameList* list) {
   }
   std::stable_sort(frames.begin(), frames.end(), before);
   std::vector<FrameNumber> numbers;
+  numbers.reserve(frames.size());
   for (const ShotFrame& frame : frames) numbers.push_back(frame.number);
   for (size_t i = 1; i < frames.size(); ++i) {
     if (numbers[i] == numbers[i - 1])
@@ -254,6 +257,7 @@ absl::Status SetFrames(std::vector<MatchedFile> files, bool in_order, FrameList*
 
 std::vector<MatchedFile> Files(const std::vector<std::string>& paths) {
   std::vector<MatchedFile> files;
+  files.reserve(paths.size());
   for (const std::string& path : paths) files.push_back({path, std::nullopt});
   return files;
 }

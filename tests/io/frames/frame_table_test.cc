@@ -48,8 +48,8 @@ int EntryOf(const std::vector<std::optional<FrameNumber>>& entries,
             int frame,
             std::string* why = nullptr) {
   const absl::StatusOr<EntryChooser> chooser = EntryChooser::Make(entries, shot, "cameras");
-  absl::StatusOr<size_t> entry = chooser.status();
-  if (chooser.ok()) entry = chooser->EntryOf(FrameNumber::Whole(frame));
+  const absl::StatusOr<size_t> entry = chooser.ok() ? chooser->EntryOf(FrameNumber::Whole(frame))
+                                                    : absl::StatusOr<size_t>(chooser.status());
   if (why != nullptr) *why = std::string(entry.status().message());
   return entry.ok() ? static_cast<int>(*entry) : kNone;
 }
