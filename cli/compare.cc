@@ -18,6 +18,7 @@
 #include "cli/reports/compare_report.h"
 #include "cli/reports/fit_report.h"
 #include "cli/reports/plan_report.h"
+#include "cli/unusable_lights.h"
 #include "jobs/compare/json.h"
 #include "picture/compare_page.h"
 #include "picture/png.h"

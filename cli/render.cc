@@ -18,6 +18,7 @@
 #include "base/text_file.h"
 #include "cli/exit_code.h"
 #include "cli/flags/scene_flags.h"
+#include "cli/unusable_lights.h"
 #include "io/readback_exr_write.h"
 #include "picture/canvas.h"
 #include "picture/png.h"

@@ -10,6 +10,7 @@
 #include "cli/exit_code.h"
 #include "cli/flags/fit_inputs.h"
 #include "cli/reports/shot_report.h"
+#include "cli/unusable_lights.h"
 #include "jobs/shot/run.h"
 #include "picture/png.h"
 #include "picture/shot_page.h"

@@ -22,6 +22,7 @@
 #include "cli/exit_code.h"
 #include "cli/flags/fit_inputs.h"
 #include "cli/summary_inputs.h"
+#include "cli/unusable_lights.h"
 #include "jobs/fit_summary.h"
 #include "optimizer/fit.h"
 #include "wire/plan_proto.h"

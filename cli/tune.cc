@@ -14,6 +14,7 @@
 #include "cli/exit_code.h"
 #include "cli/reports/fit_report.h"
 #include "cli/reports/tune_report.h"
+#include "cli/unusable_lights.h"
 #include "jobs/tune/journal.h"
 #include "jobs/tune/json.h"
 #include "wire/result_json.h"

@@ -11,6 +11,7 @@
 #include "io/exr_depth.h"
 #include "io/exr_input.h"
 #include "io/light_channels.h"
+#include "wire/utf8.h"
 
 namespace lightfit {
 
@@ -44,7 +45,7 @@ absl::Status CheckShadowBits(absl::Span<const Light> lights) {
         (taken >> light.shadow_bit & 1U) != 0) {
       return absl::InvalidArgumentError(absl::StrFormat(
           "light \"%s\": shadow_bit = %d, want 0 ... %d and a different one for every light",
-          light.name,
+          Utf8Text(light.name),
           light.shadow_bit,
           kMaxLights - 1));
     }

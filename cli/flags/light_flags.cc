@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "cli/exit_code.h"
 #include "io/lights_file.h"
 #include "wire/light_proto.h"
 
@@ -67,16 +66,6 @@ absl::StatusOr<std::vector<Light>> ReadLights(const LightFlags& flags) {
   if (lights.empty() && !list->empty()) return list->front().status;
   if (absl::Status status = ValidateLights(lights); !status.ok()) return status;
   return lights;
-}
-
-int PrintUnusable(const std::vector<ListedLight>& lights, absl::string_view what) {
-  int num_unusable = 0;
-  for (const ListedLight& listed : lights) {
-    if (listed.status.ok()) continue;
-    PrintFailedLight(what, listed.light.name, listed.status);
-    ++num_unusable;
-  }
-  return num_unusable;
 }
 
 }  // namespace lightfit::cli

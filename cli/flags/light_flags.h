@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "absl/strings/string_view.h"
 #include "geometry/light.h"
 #include "io/lights_file.h"
 
@@ -34,9 +33,5 @@ absl::StatusOr<std::vector<ListedLight>> ListLights(const LightFlags& flags);
 
 // Those of them that can be used; there are at most kMaxLights.
 absl::StatusOr<std::vector<Light>> ReadLights(const LightFlags& flags);
-
-// Says on stderr which lights are of no use and why: "no matrix for light "env": ..." where `what`
-// is "matrix". Returns how many they are.
-int PrintUnusable(const std::vector<ListedLight>& lights, absl::string_view what);
 
 }  // namespace lightfit::cli
