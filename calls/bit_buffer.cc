@@ -4,6 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "calls/grow.h"
 
 namespace lightfit {
 namespace {
@@ -81,9 +82,8 @@ absl::Status BitBuffer::AppendBits(absl::string_view bytes) {
       BitsField(header_), bytes, sizeof(uint32_t), num_bits_bytes_, header_.bits_bytes());
   if (!status.ok()) return status;
   num_bits_bytes_ += static_cast<int64_t>(bytes.size());
-  words_.reserve(header_.num_pixels);
   const size_t first = words_.size();
-  words_.resize(first + bytes.size() / sizeof(uint32_t));
+  GrowTo(first + bytes.size() / sizeof(uint32_t), header_.num_pixels, &words_);
   std::memcpy(words_.data() + first, bytes.data(), bytes.size());
   return absl::OkStatus();
 }
@@ -121,7 +121,7 @@ absl::Status BitBuffer::AppendPlane(int plane, absl::string_view bytes) {
   absl::Status status =
       CheckPiece(PlaneField(header_, plane), bytes, 1, arrived, header_.plane_bytes());
   if (!status.ok()) return status;
-  words_.resize(header_.num_pixels);
+  GrowTo(static_cast<size_t>(arrived) + bytes.size(), header_.num_pixels, &words_);
   uint32_t* const words = words_.data() + arrived;
   for (size_t i = 0; i < bytes.size(); ++i) {
     if (static_cast<uint8_t>(bytes[i]) >= kLeastSet) words[i] |= bit;

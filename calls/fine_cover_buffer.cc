@@ -5,6 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "calls/bit_buffer.h"
+#include "calls/grow.h"
 #include "geometry/light.h"
 
 namespace lightfit {
@@ -81,9 +82,8 @@ absl::Status FineCoverBuffer::AppendTo(const Array& array, std::vector<Word>* wo
                                    header_.num_cells() * kValueBytes,
                                    kOnePerCell);
   if (!status.ok()) return status;
-  words->reserve(header_.num_cells());
   const size_t first = words->size();
-  words->resize(first + array.bytes.size() / sizeof(Word));
+  GrowTo(first + array.bytes.size() / sizeof(Word), header_.num_cells(), words);
   std::memcpy(words->data() + first, array.bytes.data(), array.bytes.size());
   return absl::OkStatus();
 }

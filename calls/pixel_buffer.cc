@@ -11,6 +11,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "calls/grow.h"
 #include "calls/request_lights.h"
 #include "optimizer/readback/kernels.h"
 #include "wire/camera_proto.h"
@@ -295,9 +296,8 @@ absl::Status PixelBuffer::AppendDepth(absl::string_view bytes) {
       CheckPiece("readback.depth", bytes, value_bytes, num_depth_bytes_, header_.depth_bytes());
   if (!status.ok()) return status;
   num_depth_bytes_ += static_cast<int64_t>(bytes.size());
-  depth_.reserve(header_.num_pixels());
   const size_t first = depth_.size(), count = bytes.size() / value_bytes;
-  depth_.resize(first + count);
+  GrowTo(first + count, header_.num_pixels(), &depth_);
   if (header_.depth_format == v1::DEPTH_FORMAT_FLOAT32) {
     std::memcpy(depth_.data() + first, bytes.data(), bytes.size());
     return absl::OkStatus();

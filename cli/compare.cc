@@ -20,6 +20,7 @@
 #include "cli/reports/fit_report.h"
 #include "cli/reports/legend.h"
 #include "cli/reports/plan_report.h"
+#include "cli/unusable_lights.h"
 #include "io/image_exr_write.h"
 #include "jobs/compare/json.h"
 #include "jobs/compare/masks.h"
@@ -211,7 +212,7 @@ int RunCompare(const CompareFlags& flags) {
   int num_failed = PrintFailedLights(comparisons, plan.has_value());
   if (!flags.is_readback()) {
     const absl::StatusOr<std::vector<ListedLight>> lights = ListLights(flags.scene.lights);
-    if (lights.ok()) num_failed += PrintUnusable("shadow", *lights);
+    if (lights.ok()) num_failed += PrintUnusable(*lights, "shadow");
   }
   status = WriteOutputs(flags, *inputs, comparisons);
   if (!status.ok()) return Fail(kExitBadInput, status);

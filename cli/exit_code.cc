@@ -47,14 +47,4 @@ void PrintFailedLight(absl::string_view what,
   PrintError(absl::StrCat("no ", what, " for ", message));
 }
 
-int PrintUnusable(absl::string_view what, const std::vector<ListedLight>& lights) {
-  int num_unusable = 0;
-  for (const ListedLight& listed : lights) {
-    if (listed.status.ok()) continue;
-    PrintFailedLight(what, listed.light.name, listed.status);
-    ++num_unusable;
-  }
-  return num_unusable;
-}
-
 }  // namespace lightfit::cli

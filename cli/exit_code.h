@@ -8,7 +8,6 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/string_view.h"
-#include "io/lights_file.h"
 
 namespace lightfit::cli {
 
@@ -36,8 +35,5 @@ int Fail(ExitCode code, const absl::Status& status);
 void PrintFailedLight(absl::string_view what,
                       absl::string_view light_name,
                       const absl::Status& status);
-
-// Likewise for each light that is of no use. Returns how many they are.
-int PrintUnusable(absl::string_view what, const std::vector<ListedLight>& lights);
 
 }  // namespace lightfit::cli

@@ -20,6 +20,7 @@
 #include "cli/exit_code.h"
 #include "cli/flags/scene_flags.h"
 #include "cli/flags/scene_needs.h"
+#include "cli/unusable_lights.h"
 #include "geometry/sized_camera.h"
 #include "io/camera_file.h"
 #include "io/readback_exr_write.h"
@@ -323,7 +324,7 @@ int RunRender(RenderFlags flags) {
     return Fail(kExitBadInput, status);
   }
   const absl::StatusOr<std::vector<ListedLight>> lights = ListLights(flags.scene.lights);
-  return lights.ok() && PrintUnusable("shadow", *lights) > 0 ? kExitIncomplete : kExitOk;
+  return lights.ok() && PrintUnusable(*lights, "shadow") > 0 ? kExitIncomplete : kExitOk;
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "cli/flags/frame_inputs.h"
 #include "cli/reports/legend.h"
 #include "cli/reports/shot_report.h"
+#include "cli/unusable_lights.h"
 #include "jobs/shot/run.h"
 #include "picture/png.h"
 #include "picture/shot_page.h"
@@ -95,7 +96,7 @@ int RunShotVerb(const ShotFlags& flags) {
   const std::vector<std::string> errors = ShotErrors(context);
   for (const std::string& error : errors) PrintError(error);
   const absl::StatusOr<std::vector<ListedLight>> lights = ListLightsOfAnyFrame(flags.fit);
-  const int num_unusable = lights.ok() ? PrintUnusable("matrix", *lights) : 0;
+  const int num_unusable = lights.ok() ? PrintUnusable(*lights, "matrix") : 0;
   if (errors.empty() && num_unusable == 0) return kExitOk;
   return HasAnswer(context.rows) ? kExitIncomplete : kExitBadInput;
 }

@@ -23,6 +23,7 @@
 #include "cli/flags/frame_inputs.h"
 #include "cli/summary_inputs.h"
 #include "cli/summary_list.h"
+#include "cli/unusable_lights.h"
 #include "io/notes/readback_notes.h"
 #include "jobs/add_summaries.h"
 #include "jobs/fit_summary.h"
@@ -318,7 +319,7 @@ int RunSummarize(const SummarizeFlags& flags) {
   const bool is_complete = PrintMissingFrames(*sum, sets, job->inputs);
   if (job->HasReadbacks()) {
     const absl::StatusOr<std::vector<ListedLight>> lights = ListLightsOfAnyFrame(flags.fit);
-    if (lights.ok()) num_failed += PrintUnusable("summary", *lights);
+    if (lights.ok()) num_failed += PrintUnusable(*lights, "summary");
   }
   if (num_failed == 0 && is_complete) return kExitOk;
   const bool has_samples =

@@ -16,6 +16,7 @@
 #include "cli/reports/fit_report.h"
 #include "cli/reports/legend.h"
 #include "cli/reports/tune_report.h"
+#include "cli/unusable_lights.h"
 #include "jobs/tune/journal.h"
 #include "jobs/tune/json.h"
 #include "wire/result_json.h"
@@ -139,7 +140,7 @@ int RunTune(const TuneFlags& flags) {
   }
   int num_failed = PrintFailedLights(*lights);
   const absl::StatusOr<std::vector<ListedLight>> listed = ListLights(flags.compare.scene.lights);
-  if (listed.ok()) num_failed += PrintUnusable("matrix", *listed);
+  if (listed.ok()) num_failed += PrintUnusable(*listed, "matrix");
   if (!flags.json_path.empty()) {
     status = WriteFitResultJson(flags.json_path,
                                 TunedToProto(WithStreamNames(flags.compare.scene.scene),

@@ -7,6 +7,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/string_view.h"
 #include "absl/strings/strip.h"
+#include "wire/utf8.h"
 
 namespace lightfit::internal {
 
@@ -59,7 +60,7 @@ absl::Status CheckSameSize(const OpenReadback& file, ChannelId other) {
 absl::Status OfLight(const Light& light, const absl::Status& status) {
   if (status.ok()) return status;
   return absl::Status(status.code(),
-                      absl::StrFormat("light \"%s\": %s", light.name, status.message()));
+                      absl::StrFormat("light \"%s\": %s", Utf8Text(light.name), status.message()));
 }
 
 // For messages: of a stereo file only what is in the depth's view counts.
@@ -128,9 +129,9 @@ absl::Status ReadShadowOfLight(const OpenReadback& file,
   return absl::NotFoundError(
       absl::StrFormat("light \"%s\": %s has no channel \"%s\"%s; lights with a shadow channel: %s; "
                       "all channels: %s",
-                      light.name,
+                      Utf8Text(light.name),
                       file.exr.path(),
-                      channel,
+                      Utf8Text(channel),
                       InView(file),
                       QuotedList(LightsInFile(file.channels, format)),
                       file.channels.QuotedByPart()));

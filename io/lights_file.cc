@@ -129,12 +129,17 @@ absl::StatusOr<std::string> JsonOf(const std::string& path) {
   return IsGltf(path) ? GltfLightsJson(path) : ReadTextFile(path);
 }
 
+absl::Status AtIndex(int index, const absl::Status& status) {
+  return absl::Status(status.code(), absl::StrCat("lights[", index, "]: ", status.message()));
+}
+
 ListedLight LightOfEntry(const Value& entry, int index) {
   ListedLight listed;
   listed.light.shadow_bit = index;
+  listed.light.direction.setZero();  // it has none that anybody stated
+  // Who has a name is told by it.
   const auto fail = [&listed, index](const absl::Status& status) {
-    listed.status =
-        absl::Status(status.code(), absl::StrCat("lights[", index, "]: ", status.message()));
+    listed.status = listed.light.name.empty() ? AtIndex(index, status) : status;
   };
   if (!entry.has_struct_value()) {
     fail(absl::InvalidArgumentError(
@@ -192,7 +197,10 @@ absl::StatusOr<std::vector<Light>> ParseLightsJson(absl::string_view json) {
   if (list->size() > kMaxLights) return TooManyLightsError(static_cast<int64_t>(list->size()));
   std::vector<Light> lights;
   for (ListedLight& listed : *list) {
-    if (!listed.status.ok()) return listed.status;
+    if (!listed.status.ok()) {
+      if (listed.light.name.empty()) return listed.status;
+      return AtIndex(listed.light.shadow_bit, listed.status);
+    }
     lights.push_back(std::move(listed.light));
   }
   return lights;

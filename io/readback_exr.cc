@@ -13,6 +13,7 @@
 #include "io/exr/input.h"
 #include "io/header_lights.h"
 #include "io/light_channels.h"
+#include "wire/utf8.h"
 
 namespace lightfit {
 
@@ -46,7 +47,7 @@ absl::Status CheckShadowBits(absl::Span<const Light> lights) {
         (taken >> light.shadow_bit & 1U) != 0) {
       return absl::InvalidArgumentError(absl::StrFormat(
           "light \"%s\": shadow_bit = %d, want 0 ... %d and a different one for every light",
-          light.name,
+          Utf8Text(light.name),
           light.shadow_bit,
           kMaxLights - 1));
     }

@@ -45,7 +45,7 @@ absl::Status Validate(const Readback& readback, absl::Span<const Light> lights) 
     if (light.name.size() > kMaxNameBytes) {
       return absl::InvalidArgumentError(
           absl::StrFormat("light \"%s...\": name has %d bytes, want at most %d in a channel name",
-                          light.name.substr(0, 32),
+                          Utf8Text(light.name.substr(0, 32)),
                           light.name.size(),
                           kMaxNameBytes));
     }

@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "wire/utf8.h"
 
 namespace lightfit {
 
@@ -51,7 +52,7 @@ absl::Status ValidateNamedLight(const Light& light) {
   }
   if (light.name.size() > kMaxNameBytes) {
     return absl::InvalidArgumentError(absl::StrFormat("light \"%s...\": name has %d bytes, want %d",
-                                                      light.name.substr(0, 32),
+                                                      Utf8Text(light.name.substr(0, 32)),
                                                       light.name.size(),
                                                       kMaxNameBytes));
   }
@@ -81,6 +82,7 @@ v1::Light LightToProto(const Light& light) {
   v1::Light proto;
   proto.set_name(light.name);
   const bool is_point = light.kind == Light::Kind::kPoint;
+  if (!is_point && light.direction.isZero(0.0)) return proto;  // of no use, and not made up
   for (const double value : is_point ? light.position : light.direction) {
     is_point ? proto.add_position(value) : proto.add_direction(value);
   }

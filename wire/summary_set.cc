@@ -11,6 +11,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/strip.h"
 #include "wire/options_proto.h"
+#include "wire/utf8.h"
 
 namespace lightfit {
 
@@ -85,7 +86,8 @@ LightSummary SummaryOfFrame(const Light& light,
                      ": ",
                      absl::StripPrefix(summary.status().message(),
                                        absl::StrCat("light \"", light.name, "\": ")));
-    result.failure = absl::Status(summary.status().code(), message.substr(0, kMaxFailureBytes));
+    result.failure =
+        absl::Status(summary.status().code(), Utf8Text(message.substr(0, kMaxFailureBytes)));
   }
   // -0 becomes 0, or equal lights would not be equal bytes.
   result.total.light.position.array() += 0.0;

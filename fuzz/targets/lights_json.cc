@@ -1,6 +1,7 @@
-// Files of lights, which scene files are too.
+// Files of lights, which scene files are too, in any encoding.
 #include <google/protobuf/util/message_differencer.h>
 
+#include "base/text_encoding.h"
 #include "fuzz/input_form.h"
 #include "fuzz/promises.h"
 #include "io/lights_file.h"
@@ -24,9 +25,21 @@ v1::LightList ListOf(const std::vector<Light>& lights) {
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace lightfit;  // NOLINT(google-build-using-namespace)
-  const absl::StatusOr<std::vector<Light>> lights =
-      ParseLightsJson({reinterpret_cast<const char*>(data), size});
+  const absl::StatusOr<std::string> text =
+      DecodeText(std::string(reinterpret_cast<const char*>(data), size));
+  fuzz::PromiseOkOrError(text.status());
+  if (!text.ok()) return 0;
+  const absl::StatusOr<std::vector<ListedLight>> listed = ParseLightList(*text);
+  fuzz::PromiseOkOrError(listed.status());
+  const absl::StatusOr<std::vector<Light>> lights = ParseLightsJson(*text);
   fuzz::PromiseOkOrError(lights.status());
+  if (listed.ok()) {
+    for (const ListedLight& light : *listed) {
+      fuzz::PromiseOkOrError(light.status);
+      fuzz::Promise(!light.status.ok() || ValidateNamedLight(light.light).ok(),
+                    "a listed light can be used, or says why not");
+    }
+  }
   if (!lights.ok()) return 0;
   fuzz::Promise(ValidateLights(*lights).ok(), "lights from a file can be used");
   const v1::LightList list = fuzz::ListOf(*lights);

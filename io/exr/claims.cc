@@ -87,8 +87,9 @@ absl::Status CheckExrClaims(const ExrClaims& part, int64_t bytes_left) {
         Times(kBytesOfOffset, stated),
         bytes_left));
   }
-  const int64_t chunk_pixels =
-      part.is_tiled ? Times(part.tile_width, part.tile_height) : Times(width, lines);
+  // Flags and type of a damaged file may differ, so that lines count for tiles as well.
+  const int64_t tile_pixels = part.is_tiled ? Times(part.tile_width, part.tile_height) : 0;
+  const int64_t chunk_pixels = std::max(tile_pixels, Times(width, lines));
   const int64_t chunk_bytes = Times(chunk_pixels, part.bytes_per_pixel);
   const int64_t image_bytes = std::min(Times(Times(width, height), part.bytes_per_pixel),
                                        MostPixelBytes(part.compression, bytes_left));

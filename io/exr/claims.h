@@ -16,12 +16,13 @@
 
 namespace lightfit::internal {
 
+// As OpenEXR has it where the header does not say.
 struct ExrClaims {
-  int64_t width = 0, height = 0;  // of the data window; 0: not stated
+  int64_t width = 64, height = 64;  // of the data window
   bool is_tiled = false;
   int64_t tile_width = 0, tile_height = 0;
   std::optional<int64_t> chunk_count;  // as stated
-  int compression = 0;                 // Imf::Compression
+  int compression = 3;                 // Imf::Compression, ZIP
   int64_t bytes_per_pixel = 0;         // of all channels
 };
 

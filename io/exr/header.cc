@@ -136,7 +136,7 @@ class HeaderCheck {
     } else if (name == "type" && type == "string") {
       std::string value(static_cast<size_t>(std::min<int64_t>(size, kMaxNameBytes)), '\0');
       file_.read(value.data(), static_cast<std::streamsize>(value.size()));
-      part.is_tiled = absl::StrContains(value, "tile");
+      part.is_tiled = part.is_tiled || absl::StrContains(value, "tile");
     }
   }
 

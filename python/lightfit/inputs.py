@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import dataclasses
 import json
 import os
@@ -296,9 +297,41 @@ def _light_message(light: AnyLight, index: int) -> light_pb2.Light:
     return message
 
 
+def _decoded(data: bytes) -> str:
+    """Text as other systems write it: UTF-8 with a mark, UTF-16. As base/text_encoding.h."""
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return data.decode("utf-16")
+    return data.decode("utf-8-sig")
+
+
+_POINTS = {"point", "spot", "omni", "sphere", "photometric"}
+_SUNS = {"sun", "directional", "direction", "distant", "infinite"}
+
+
+def _as_light(fields: Any) -> Any:
+    """An entry of a lights file, as io/lights_file.h understands it: of a spot the position, of a
+    sun the direction; of what has neither, such as a dome or an area, the name, which fails
+    alone."""
+    if not isinstance(fields, dict):
+        return fields
+    words = [fields.get(name) for name in ("type", "kind", "light_type", "lightType")]
+    said = next((word for word in words if word not in (None, "")), None)
+    bare = "".join(c for c in str(said).lower() if "a" <= c <= "z")
+    bare = bare[3:] if bare.startswith("pxr") and len(bare) > 3 else bare
+    if len(bare) > 5:
+        bare = bare[:-5] if bare.endswith("light") else bare
+        bare = bare[5:] if bare.startswith("light") else bare
+    unused = set()
+    if said is not None and bare not in _POINTS | _SUNS:
+        unused = {"position", "direction"}
+    elif fields.get("position") and fields.get("direction"):
+        unused = {"position"} if bare in _SUNS else {"direction"}
+    return {name: value for name, value in fields.items() if name not in unused}
+
+
 def _lights_of_file(path: Path) -> Tuple[light_pb2.Light, ...]:
     try:
-        text = path.read_text(encoding="utf-8")
+        text = _decoded(path.read_bytes())
     except OSError as error:
         raise InvalidArgumentError(f"lights: {path}: {error.strerror}") from None
     except UnicodeDecodeError:
@@ -307,6 +340,8 @@ def _lights_of_file(path: Path) -> Tuple[light_pb2.Light, ...]:
         fields = json.loads(text)
         if not isinstance(fields, dict):
             raise json_format.ParseError("is no object")
+        if isinstance(fields.get("lights"), list):
+            fields["lights"] = [_as_light(light) for light in fields["lights"]]
         parsed = light_pb2.LightList()
         json_format.ParseDict(fields, parsed, ignore_unknown_fields=True)
     except (json.JSONDecodeError, json_format.ParseError) as error:

@@ -100,9 +100,6 @@ TEST(Inputs, DamagedLightsFilesAreRefused) {
   const std::pair<const char*, const char*> files[] = {
       {"broken.json", "{\"lights\": ["},
       {"none.json", "{\"lights\": []}"},
-      {"twice.json",
-       "{\"lights\": [{\"name\": \"sun\", \"direction\": [0, 0, -1]},"
-       " {\"name\": \"sun\", \"direction\": [0, 1, -1]}]}"},
       {"zero.json", "{\"lights\": [{\"name\": \"sun\", \"direction\": [0, 0, 0]}]}"}};
   for (const auto& [name, text] : files) {
     SCOPED_TRACE(name);

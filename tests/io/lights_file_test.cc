@@ -4,6 +4,7 @@
 
 #include "tests/io/testing.h"
 #include "wire/light_proto.h"
+#include "wire/utf8.h"
 
 namespace lightfit {
 namespace {
@@ -140,6 +141,18 @@ TEST(ParseLightList, WhatIsWrongWithOneLightIsItsOwn) {
   }
   EXPECT_EQ((*lights)[10].light.position, Eigen::Vector3d(4, 5, 6));
   EXPECT_EQ((*lights)[2].light.name, "env");
+}
+
+// Cut within a character, a name is still UTF-8 in the message.
+TEST(ParseLightList, LongNamesAreCutBetweenCharacters) {
+  std::string name = "x";
+  for (int i = 0; i < 200; ++i) name += "\xE2\x82\xAC";
+  const auto lights =
+      ParseLightList("{\"lights\":[{\"name\":\"" + name + "\",\"position\":[1,2,3]}]}");
+  ASSERT_TRUE(lights.ok());
+  const std::string message((*lights)[0].status.message());
+  EXPECT_TRUE(HasAll(message, {"has 601 bytes"}));
+  EXPECT_EQ(Utf8Text(message), message);
 }
 
 TEST(ParseLightList, NumbersComeThroughToTheLastBit) {

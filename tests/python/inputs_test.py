@@ -94,6 +94,26 @@ def test_lights_are_taken_in_every_form(tmp_path: pathlib.Path) -> None:
     assert Light.point("key", numpy.arange(3)).message.position == [0, 1, 2]
 
 
+def test_lights_files_of_whole_scenes_are_understood(tmp_path: pathlib.Path) -> None:
+    """As lightfit fit --lights does: a spot is a point, a dome fails alone; marks and UTF-16."""
+    text = json.dumps({"lights": [
+        {"name": "sun", "type": "PxrDistantLight", "position": [1, 2, 3], "direction": [0, 0, -1]},
+        {"name": "spot", "position": [1, 2, 3], "direction": [0, 0, -1], "cone": 40},
+        {"name": "env", "type": "DOME"},
+        {"name": "panel", "kind": "area_light", "position": [1, 2, 3]},
+    ]})
+    want = (
+        light_pb2.Light(name="sun", direction=[0, 0, -1]),
+        light_pb2.Light(name="spot", position=[1, 2, 3]),
+        light_pb2.Light(name="env"),
+        light_pb2.Light(name="panel"),
+    )
+    path = tmp_path / "lights.json"
+    for encoding in ("utf-8", "utf-8-sig", "utf-16"):
+        path.write_bytes(text.encode(encoding))
+        assert light_messages(path) == want
+
+
 @pytest.mark.parametrize(
     "lights, words",
     [
