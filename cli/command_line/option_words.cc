@@ -67,6 +67,7 @@ constexpr std::pair<const char*, const char*> kEnumerators[] = {
 
 // Fields that no option sets: said as words.
 constexpr const char* kWithoutOption[] = {"min_w",
+                                          "margin_texels",
                                           "along_edge_share",
                                           "reweighting_rounds",
                                           "line_search_rounds",
@@ -107,6 +108,11 @@ std::string WithPhrases(absl::string_view message) {
 
 bool IsStructure(const std::string& word) {
   return std::find(std::begin(kStructures), std::end(kStructures), word) != std::end(kStructures);
+}
+
+bool IsExtension(const std::string& word) {
+  constexpr const char* kExtensions[] = {"exr", "json", "csv", "png", "summary", "journal", "txt"};
+  return std::find(std::begin(kExtensions), std::end(kExtensions), word) != std::end(kExtensions);
 }
 
 bool HasOption(const std::string& option) {
@@ -160,6 +166,7 @@ std::optional<Said> SayFor(const std::string& word) {
   const bool is_path = path.size() > 1 && std::all_of(path.begin(), path.end() - 1, IsStructure);
   if (path.size() > 1 && !is_path) return std::nullopt;
   const std::string& field = path.back();
+  if (is_path && IsExtension(field)) return std::nullopt;  // the file fit.exr
   if (!is_path && !absl::StrContains(field, '_')) return std::nullopt;
   for (const auto& [name, setting] : kSettings) {
     if (field == name) return Said{setting};
@@ -167,10 +174,10 @@ std::optional<Said> SayFor(const std::string& word) {
   if (std::optional<std::string> option = OptionFor(field); option.has_value()) {
     return Said{*option, true};
   }
-  const bool is_known =
-      is_path || std::any_of(std::begin(kWithoutOption),
-                             std::end(kWithoutOption),
-                             [&field](const char* name) { return field == name; });
+  const bool is_known = path[0] == "options" || path[0] == "rules" ||
+                        std::any_of(std::begin(kWithoutOption),
+                                    std::end(kWithoutOption),
+                                    [&field](const char* name) { return field == name; });
   if (!is_known) return std::nullopt;
   return Said{absl::StrReplaceAll(field, {{"_", " "}})};
 }

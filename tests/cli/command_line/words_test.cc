@@ -217,6 +217,16 @@ TEST(Messages, AreTranslatedByTheVerbsOwnOptions) {
             "--metric is l1-edge here and l2 there");
   EXPECT_EQ(said("fit", "a.exr: near_1 kept_2"), "a.exr: near_1 kept_2");
   EXPECT_EQ(said("compare", "--phases: judge.phases = 3, want 4"), "--phases 3, want 4");
+  for (const std::string file : {"fit.exr",
+                                 "plan.csv",
+                                 "readback.json",
+                                 "options.png",
+                                 "samples.z",
+                                 "judge.summary",
+                                 "fit_1.exr",
+                                 "margin.percent"}) {
+    EXPECT_EQ(said("fit", (file + ": no such file").c_str()), file + ": no such file");
+  }
   // Files keep their names and fields.
   EXPECT_EQ(said("fit", "plan.json: light \"lamp\": plan.maps: 0 of them"),
             "plan.json: light \"lamp\": plan.maps: 0 of them");
