@@ -1,5 +1,7 @@
 #include "cli/flags/frame_inputs.h"
 
+#include <google/protobuf/struct.pb.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -8,10 +10,14 @@
 #include "base/text_file.h"
 #include "cli/flags/fit_inputs.h"
 #include "io/frames/exr_frame.h"
+#include "io/header_lights.h"
 #include "jobs/shot/judge.h"
+#include "wire/proto_json.h"
 
 namespace lightfit::cli {
 namespace {
+
+using google::protobuf::Struct;
 
 // Where the number alone chooses, a header that says another one is not passed over.
 absl::Status CheckHeader(const EntryChooser& chooser,
@@ -64,6 +70,27 @@ absl::StatusOr<ReadbackExrOptions> WithBackgroundChecked(ReadbackExrOptions opti
                    ", whose background is the far plane: leave it out"));
 }
 
+// Then those of the read-backs' headers are taken, where these have any.
+bool NoneAreGiven(const LightFlags& lights) { return lights.path.empty() && lights.extra.empty(); }
+
+// "frames" of a lights file for the headers of a shot. A file that cannot be read says so later.
+absl::StatusOr<std::optional<LightFrames>> LightsOfHeaders(const FrameList& list) {
+  Struct file;
+  auto* frames = (*file.mutable_fields())["frames"].mutable_struct_value()->mutable_fields();
+  bool has_any = false;
+  for (const ShotFrame& frame : list.frames) {
+    Struct* entry = (*frames)[frame.number.Text()].mutable_struct_value();
+    (*entry->mutable_fields())["lights"].mutable_list_value();
+    const absl::StatusOr<std::optional<std::vector<Light>>> lights = LightsFromHeader(frame.path);
+    if (!lights.ok() || !lights->has_value()) continue;
+    const absl::StatusOr<std::string> json = LightsForHeader(**lights);
+    if (!json.ok() || !JsonToProto(*json, *entry).ok()) continue;
+    has_any = true;
+  }
+  if (!has_any) return std::optional<LightFrames>();
+  return LightFrames::Of(file);
+}
+
 }  // namespace
 
 absl::StatusOr<FrameInputs> FrameInputs::Read(const FitFlags& flags, const ShotNumbers& shot) {
@@ -80,7 +107,7 @@ absl::StatusOr<FrameInputs> FrameInputs::Read(const FitFlags& flags, const ShotN
       inputs.cameras_ = *std::move(chooser);
     }
   }
-  if (!flags.lights.path.empty()) {
+  if (!flags.lights.path.empty() && flags.lights.json.empty()) {
     absl::StatusOr<std::optional<LightFrames>> frames = LightFrames::Read(flags.lights.path);
     if (!frames.ok()) return frames.status();
     inputs.light_frames_ = *std::move(frames);
@@ -100,7 +127,16 @@ absl::StatusOr<FrameInputs> FrameInputs::ForFile(const FitFlags& flags, const st
   shot.stated = flags.frame;
   shot.are_known = number.has_value() || flags.frame.has_value();
   shot.first = shot.last = number.value_or(FrameNumber{});
-  return Read(flags, shot);
+  if (!NoneAreGiven(flags.lights)) return Read(flags, shot);
+  const absl::StatusOr<std::optional<std::vector<Light>>> lights = LightsFromHeader(path);
+  if (!lights.ok()) return lights.status();
+  if (!lights->has_value()) return Read(flags, shot);
+  FitFlags own = flags;
+  absl::StatusOr<std::string> json = LightsForHeader(**lights);
+  if (!json.ok()) return InFile(path, json.status());
+  own.lights.path = path;
+  own.lights.json = *std::move(json);
+  return Read(own, shot);
 }
 
 absl::StatusOr<FrameInputs> FrameInputs::ForShot(const FitFlags& flags, const FrameList& list) {
@@ -109,7 +145,21 @@ absl::StatusOr<FrameInputs> FrameInputs::ForShot(const FitFlags& flags, const Fr
   shot.are_known = list.is_numbered || (list.frames.size() == 1 && flags.frame.has_value());
   shot.first = list.frames.front().number;
   shot.last = list.frames.back().number;
-  return Read(flags, shot);
+  absl::StatusOr<FrameInputs> inputs = Read(flags, shot);
+  if (!inputs.ok() || !NoneAreGiven(flags.lights)) return inputs;
+  absl::StatusOr<std::optional<LightFrames>> lights = LightsOfHeaders(list);
+  if (!lights.ok()) return lights.status();
+  if (!lights->has_value()) return inputs;
+  // Each frame's own: neither --frame nor what else its header says can be about another.
+  ShotNumbers own = shot;
+  own.stated.reset();
+  own.are_known = true;
+  absl::StatusOr<EntryChooser> chooser = EntryChooser::Make((*lights)->numbers(), own, "lights");
+  if (!chooser.ok()) return chooser.status();
+  inputs->light_frames_ = *std::move(lights);
+  inputs->lights_ = *std::move(chooser);
+  inputs->lights_are_of_headers_ = true;
+  return inputs;
 }
 
 absl::StatusOr<ReadbackExrOptions> FrameInputs::ReadingOf(const std::string& path,
@@ -135,8 +185,9 @@ absl::StatusOr<ReadbackExrOptions> FrameInputs::ReadingOf(const std::string& pat
 
 absl::StatusOr<size_t> FrameInputs::LightsEntryOf(const std::string& path,
                                                   FrameNumber number) const {
-  if (absl::Status status = CheckHeader(*lights_, flags_.lights.path, path, number); !status.ok()) {
-    return status;
+  if (!lights_are_of_headers_) {
+    absl::Status status = CheckHeader(*lights_, flags_.lights.path, path, number);
+    if (!status.ok()) return status;
   }
   const absl::StatusOr<size_t> entry = lights_->EntryOf(number);
   if (!entry.ok()) return InFile(flags_.lights.path, entry.status());

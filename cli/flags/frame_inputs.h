@@ -1,7 +1,8 @@
 // cli/flags/frame_inputs.h
 //
 // What is another in every frame of a shot: its camera, and lights that move.
-// In:   the files of --camera and --lights; which frames they are read for.
+// In:   the files of --camera and --lights, or without lights the headers of the read-backs
+//       (io/header_lights.h); which frames they are read for.
 // Out:  by the frame's number, what belongs to it; or why that cannot be known.
 #pragma once
 
@@ -61,6 +62,7 @@ class FrameInputs {
   std::optional<EntryChooser> cameras_;  // absent: one camera for all, or none
   std::optional<LightFrames> light_frames_;
   std::optional<EntryChooser> lights_;
+  bool lights_are_of_headers_ = false;
 };
 
 // ListFitLights() of --lights for the read-back that is fitted.

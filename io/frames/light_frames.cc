@@ -104,7 +104,12 @@ absl::Status LightFrames::AddFramesOfLight(const std::string& name, const Struct
 absl::StatusOr<std::optional<LightFrames>> LightFrames::Parse(absl::string_view json) {
   Struct file;
   // What is wrong with such a file io/lights_file.h says.
-  if (!JsonToProto(json, file).ok() || !HasMovingLights(file)) return std::optional<LightFrames>();
+  if (!JsonToProto(json, file).ok()) return std::optional<LightFrames>();
+  return Of(file);
+}
+
+absl::StatusOr<std::optional<LightFrames>> LightFrames::Of(const Struct& file) {
+  if (!HasMovingLights(file)) return std::optional<LightFrames>();
   LightFrames frames;
   for (const Value& light : LightsIn(file).values()) {
     const std::string name = NameOf(light);

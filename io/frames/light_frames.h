@@ -31,6 +31,7 @@ class LightFrames {
   // Nothing where the lights stand still: the file is a plain one, or one of cameras as well, or no
   // lights file at all.
   static absl::StatusOr<std::optional<LightFrames>> Parse(absl::string_view json);
+  static absl::StatusOr<std::optional<LightFrames>> Of(const google::protobuf::Struct& file);
   static absl::StatusOr<std::optional<LightFrames>> Read(const std::string& path);
 
   // One entry for each frame that the file speaks of: of all or of none the number.

@@ -96,7 +96,7 @@ absl::StatusOr<ShotFit> JudgeFit(const ShotJob& job,
 
 absl::Status AbsentError(const std::string& light_name, FrameNumber number) {
   return absl::NotFoundError(absl::StrFormat(
-      "light \"%s\": --lights does not say where it is in frame %s", light_name, number.Text()));
+      "light \"%s\": nothing says where it is in frame %s", light_name, number.Text()));
 }
 
 void SetAbsent(const std::vector<std::string>& absent,

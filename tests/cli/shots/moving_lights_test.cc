@@ -61,10 +61,14 @@ class MovingLights : public ::testing::Test {
   }
 
   ProcessResult Run(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> all = {"--lights", LightsPath()};
+    all.insert(all.end(), more.begin(), more.end());
+    return RunWithoutLights(all);
+  }
+
+  ProcessResult RunWithoutLights(const std::vector<std::string>& more) const {
     std::vector<std::string> arguments = {"shot",
                                           folder_.Path("in"),
-                                          "--lights",
-                                          LightsPath(),
                                           "--map",
                                           "256x256",
                                           "-o",
@@ -76,8 +80,14 @@ class MovingLights : public ::testing::Test {
     return RunLightfit(arguments);
   }
 
+  std::string ResultPath(const std::string& mode, int frame) const {
+    return folder_.Path(absl::StrFormat("out/%s/%d.json", mode, 1001 + frame));
+  }
+  std::string ResultText(const std::string& mode, int frame) const {
+    return ReadFile(ResultPath(mode, frame));
+  }
   v1::FitResult Result(const std::string& mode, int frame) const {
-    return ReadResult(folder_.Path(absl::StrFormat("out/%s/%d.json", mode, 1001 + frame)));
+    return ReadResult(ResultPath(mode, frame));
   }
 
   const NumberedShot shot_{1};
@@ -107,6 +117,37 @@ TEST_F(MovingLights, EveryFrameIsFittedForItsOwn) {
     }
     EXPECT_EQ(kept.lights(1).light().position(0), lights_[i][1].position.x());
   }
+}
+
+TEST_F(MovingLights, HeadersSayWhereTheyAre) {
+  ASSERT_EQ(Run().exit_code, 3);
+  std::vector<std::string> with_file;
+  for (const char* mode : {"per-frame", "tracked", "per-shot"}) {
+    for (int i = 0; i < kFrames; ++i) with_file.push_back(ResultText(mode, i));
+  }
+  const ProcessResult result = RunWithoutLights({"--force"});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.err, HasSubstr("light \"lamp\": it moves (between frames 1001 and 1002)"));
+  auto expected = with_file.begin();
+  for (const char* mode : {"per-frame", "tracked", "per-shot"}) {
+    for (int i = 0; i < kFrames; ++i) EXPECT_EQ(ResultText(mode, i), *expected++) << mode << i;
+  }
+  // One frame alone likewise.
+  const ProcessResult fit =
+      RunLightfit({"fit", FramePath(3), "--border", "lit", "--json", folder_.Path("3.json")});
+  ASSERT_EQ(fit.exit_code, 0) << fit.err;
+  EXPECT_EQ(ReadResult(folder_.Path("3.json")).lights(1).light().position(0),
+            lights_[3][1].position.x());
+}
+
+TEST_F(MovingLights, AFrameWhoseHeaderLacksALightIsNamed) {
+  const auto view = Render(shot_.scene(), NumberedShot::CameraOf(0), lights_[2]);
+  ASSERT_TRUE(WriteReadbackExr(FramePath(2), view.View(), {lights_[2][0]}).ok());
+  const ProcessResult result = RunWithoutLights({"--per-frame"});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.err, HasSubstr("light \"lamp\": nothing says where it is in frame 1003"));
+  EXPECT_EQ(Result("per-frame", 2).lights(0).status().code(), 0);
+  EXPECT_EQ(Result("per-frame", 3).lights(1).status().code(), 0);
 }
 
 TEST_F(MovingLights, OneMapForTheShotIsRefusedForThatLightAlone) {
