@@ -174,7 +174,7 @@ std::optional<Said> SayFor(const std::string& word) {
   if (std::optional<std::string> option = OptionFor(field); option.has_value()) {
     return Said{*option, true};
   }
-  const bool is_known = path[0] == "options" || path[0] == "rules" ||
+  const bool is_known = path[0] == "options" || path[0] == "rules" || path[0] == "readback" ||
                         std::any_of(std::begin(kWithoutOption),
                                     std::end(kWithoutOption),
                                     [&field](const char* name) { return field == name; });
