@@ -156,6 +156,7 @@ absl::StatusOr<FrameInputs> FrameInputs::ForShot(const FitFlags& flags, const Fr
   own.are_known = true;
   absl::StatusOr<EntryChooser> chooser = EntryChooser::Make((*lights)->numbers(), own, "lights");
   if (!chooser.ok()) return chooser.status();
+  inputs->flags_.lights.path = "lightfit.lights of the read-backs";  // for messages
   inputs->light_frames_ = *std::move(lights);
   inputs->lights_ = *std::move(chooser);
   inputs->lights_are_of_headers_ = true;

@@ -59,7 +59,7 @@ inline std::vector<CommandBlock> BlocksOf(const std::string& source, const std::
       continue;
     }
     const bool was_split = is_split;
-    is_split = absl::EndsWith(command, "\\");
+    is_split = absl::EndsWith(command, "\\") || absl::EndsWith(command, "|");
     if (is_split)
       command = std::string(absl::StripAsciiWhitespace(absl::StripSuffix(command, "\\")));
     if (!goes_on) blocks.push_back({source, number, {}});

@@ -17,6 +17,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
 #include "tests/cli/allocations.h"
+#include "tests/cli/command_line/shell.h"
 #include "tests/cli/doc_desk.h"
 #include "tests/cli/examples.h"
 #include "tests/testing/process.h"
@@ -104,7 +105,28 @@ std::vector<std::string> Matching(const std::string& pattern) {
   return names;
 }
 
+// "render ... -o - | lightfit fit - ... | jq ...", but for the programs of others at its end.
+ProcessResult RunPipeline(const std::string& command, Desk* desk) {
+  std::vector<std::string> stages;
+  for (const std::string& stage :
+       std::vector<std::string>(absl::StrSplit("lightfit " + command, " | "))) {
+    if (!absl::StartsWith(stage, "lightfit ")) break;
+    stages.push_back("$" + stage);
+    for (const std::string& word : std::vector<std::string>(absl::StrSplit(stage, ' '))) {
+      if (IsFileName(word)) desk->Provide(word.substr(word.find('=') + 1));
+    }
+  }
+  EXPECT_GT(stages.size(), 1);
+  return RunShell("set -o pipefail\n" + absl::StrJoin(stages, " | "));
+}
+
 void RunAndCheck(const std::string& shown, Desk* desk) {
+  if (absl::StrContains(shown, " | ")) {
+    const ProcessResult result = RunPipeline(Smaller(shown), desk);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_TRUE(absl::StartsWith(result.out, "{")) << result.out;
+    return;
+  }
   const std::string command = Smaller(shown);
   SCOPED_TRACE("lightfit " + shown);
   std::vector<std::string> arguments, outputs;

@@ -117,7 +117,7 @@ def test_a_frame_is_not_counted_twice(calls: Any) -> None:
     frame = large_readback(96, 64)
     numbered = [calls.summarize(*frame, number=number) for number in (1001, 1002)]  # a still shot
     assert calls.summarize(summaries=numbered).lights["sun"].frames == 2
-    with pytest.raises(ValueError, match="frame 1001 is in what it is to be added to already"):
+    with pytest.raises(ValueError, match="frame 1001 is in .* and would count twice"):
         calls.summarize(summaries=[*numbered, numbered[0]])
     with pytest.raises(ValueError, match="a frame without a number"):
         calls.summarize(summaries=[calls.summarize(*frame)] * 2)

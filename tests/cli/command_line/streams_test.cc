@@ -44,7 +44,7 @@ TEST(Streams, ReadbacksGoFromVerbToVerb) {
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, StartsWith("{"));
   EXPECT_THAT(result.out, HasSubstr("\"mapFromWorld\""));
-  EXPECT_THAT(result.err, HasSubstr("standard input: 1 frames"));
+  EXPECT_THAT(result.err, HasSubstr("standard input: 1 frame;"));
 }
 
 // The paths of a list are relative to the list; of one that is piped, to the current folder.

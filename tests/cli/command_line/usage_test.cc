@@ -45,8 +45,8 @@ TEST(Usage, AVerbThatThereIsNotIsAnsweredWithTheOneThatWasMeant) {
 }
 
 TEST(Usage, AllOptionsThatThereAreNotAreNamedAtOnce) {
-  ExpectUsage({"fit", kYard, "--lihgts", kYardLights, "--foo", "--cilp=vulkan"},
-              "lightfit fit has no options --lihgts (did you mean --lights?), --foo, --cilp (did "
+  ExpectUsage({"fit", kYard, "--lihgts", kYardLights, "--zzz", "--cilp=vulkan"},
+              "lightfit fit has no options --lihgts (did you mean --lights?), --zzz, --cilp (did "
               "you mean --clip?)");
   for (const auto& [typed, meant] : {std::pair{"--margin_percent", "--margin-percent"},
                                      {"--MAP", "--map"},
@@ -135,7 +135,7 @@ TEST(Usage, SeveralReadbacksAFolderOrASummaryAreAnsweredWithTheVerbForThem) {
 
 TEST(Usage, WhatIsMissingIsNamedAllAtOnce) {
   ExpectUsage({"summarize"}, "READBACK.exr|FILE.summary and --output FILE.summary");
-  ExpectUsage({"shot"}, "lightfit shot wants FOLDER|LIST|READBACK.exr");
+  ExpectUsage({"shot"}, "lightfit shot wants FOLDER|LIST|PATTERN|READBACK.exr");
   for (const std::string verb : {"render", "compare", "tune"}) {
     const ProcessResult result = RunLightfit({verb, "generate"});
     EXPECT_EQ(result.exit_code, 2);
