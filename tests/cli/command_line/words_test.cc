@@ -84,7 +84,7 @@ TEST(Messages, NameOptionsAndNoFieldsOfTheLibrary) {
   const std::vector<std::string> fit = {"fit", kYard, "--lights", kYardLights};
   const std::vector<std::string> allocate = {"allocate", kYard, "--lights", kYardLights};
   const std::vector<std::string> scene = {
-      "generate", "--camera", "0,1,9:0,0,0", "--light", "a=sun:0,-1,0.1"};
+      "generate:triangles=3000,objects=9", "--camera", "0,1,9:0,0,0", "--light", "a=sun:0,-1,0.1"};
   const auto joined = [](std::vector<std::string> a, const std::vector<std::string>& b) {
     a.insert(a.end(), b.begin(), b.end());
     return a;
@@ -157,7 +157,6 @@ TEST(Messages, NameOptionsAndNoFieldsOfTheLibrary) {
                                                {"--phases", "3"},
                                                {"--margin-percent", "nan"},
                                                {"--evaluations", "0"},
-                                               {"--frame", "-1"},
                                                {"--up", "0,0,0"},
                                                {"--camera-step", "nan,0,0"},
                                                {"--readback", "0x0"}}) {
