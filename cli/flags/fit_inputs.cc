@@ -88,7 +88,8 @@ absl::StatusOr<std::vector<ListedLight>> ListFitLights(const FitFlags& flags) {
   if (!all.ok()) return all.status();
   if (all->empty()) {
     return absl::InvalidArgumentError(
-        "no lights: want --lights FILE, or --light NAME=sun:X,Y,Z for one light");
+        "no lights: want --lights FILE, or --light NAME=sun:X,Y,Z for one light; the header of the "
+        "read-back has none either");
   }
   absl::StatusOr<std::vector<ListedLight>> lights = ChooseLights(*all, flags.only);
   if (!lights.ok()) return lights;

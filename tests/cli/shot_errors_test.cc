@@ -75,7 +75,8 @@ TEST(ShotErrors, MistakesAreNamedWithTheWayOut) {
   expect_error(run(shot.Path("bad.txt")), 2, "want the path of one .exr file per line");
   WriteFile(shot.Path("comments.txt"), "# nothing\n");
   expect_error(run(shot.Path("comments.txt")), 2, "the list is empty");
-  expect_error(RunLightfit({"shot", shot.Path("walk"), "-o", shot.Output()}), 2, "--lights");
+  // A read-back whose header has no lights either.
+  expect_error(RunLightfit({"shot", kYard, "-o", shot.Output()}), 2, "--lights");
   const std::string below_a_file = shot.LightsPath() + "/out";
   expect_error(
       RunLightfit({"shot", shot.Path("walk"), lights[0], lights[1], "--output", below_a_file}),
