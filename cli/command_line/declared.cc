@@ -30,7 +30,7 @@ std::vector<std::string> NamesOf(const CLI::Option& option) {
 }
 
 std::string ValueWord(const CLI::Option& option) {
-  const std::string word = option.get_type_name();
+  std::string word = option.get_type_name();
   // The checks of CLI11 put themselves behind a colon: "COUNT:INT in [1 - 32]", "N:POSITIVE".
   for (const char* check : {":INT in", ":FLOAT in", ":POSITIVE", ":NONNEGATIVE", ":FILE", ":{"}) {
     const size_t at = word.rfind(check);

@@ -55,6 +55,7 @@ std::string OptionEntry(const CLI::Option& option) {
     absl::StrAppend(&text, "\\fI", Roff(ValueWord(option)), "\\fR");
   } else {
     std::vector<std::string> bold;
+    bold.reserve(names.size());
     for (const std::string& name : names) bold.push_back(absl::StrCat("\\fB", Roff(name), "\\fR"));
     absl::StrAppend(&text, absl::StrJoin(bold, ", "));
     if (has_value) absl::StrAppend(&text, " \\fI", Roff(ValueWord(option)), "\\fR");

@@ -188,7 +188,7 @@ bool IsOfWord(char c) { return absl::ascii_isalnum(c) || c == '_' || c == '.'; }
 bool IsOfPath(char c) { return c == '/' || c == '-' || c == '\\' || c == '~'; }
 
 // "--phases: --phases 3, want ...": the option is named once.
-std::string WithoutRepetition(std::string message) {
+std::string WithoutRepetition(const std::string& message) {
   const std::string option = message.substr(0, message.find(": "));
   const bool is_twice = absl::StartsWith(option, "--") &&
                         absl::StartsWith(message, absl::StrCat(option, ": ", option, " "));

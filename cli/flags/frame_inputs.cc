@@ -190,7 +190,7 @@ absl::StatusOr<size_t> FrameInputs::LightsEntryOf(const std::string& path,
     absl::Status status = CheckHeader(*lights_, flags_.lights.path, path, number);
     if (!status.ok()) return status;
   }
-  const absl::StatusOr<size_t> entry = lights_->EntryOf(number);
+  absl::StatusOr<size_t> entry = lights_->EntryOf(number);
   if (!entry.ok()) return InFile(flags_.lights.path, entry.status());
   return entry;
 }
