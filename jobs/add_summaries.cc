@@ -15,7 +15,7 @@ absl::Status SummaryAdder::Add(const std::string& name, const SummarySet& set) {
     added_.emplace_back(name, set.frames);
     return absl::OkStatus();
   }
-  const absl::Status status = AddToSet(set, &*sum_);
+  absl::Status status = AddToSet(set, &*sum_);
   if (status.ok()) {
     added_.emplace_back(name, set.frames);
     return status;

@@ -184,8 +184,8 @@ class FramePipeline {
     if (!IsMissing(mode, work->frame)) return;
     FrameBefore before;
     if (work->before != nullptr) {
-      before =
-          BeforeFrame(job_, work->frame, work->before->file, (work->before.get()->*part).look_ups);
+      const FrameWork& last = *work->before;
+      before = BeforeFrame(job_, work->frame, last.file, (last.*part).look_ups);
     }
     const FrameWork::Mode& own = work->*part;
     const std::vector<absl::StatusOr<ShotFit>> fits =

@@ -1,6 +1,7 @@
 #include "optimizer/readback/shadow_check.h"
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
