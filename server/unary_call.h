@@ -61,7 +61,7 @@ class UnaryCall final : public grpc::ServerUnaryReactor {
  private:
   absl::Status Admit() {
     const auto num_bytes = static_cast<int64_t>(bytes_->Length());
-    const absl::Status parsed = ParseWire(bytes_, &request_);  // before it counts as a call
+    absl::Status parsed = ParseWire(bytes_, &request_);  // before it counts as a call
     if (absl::Status status = call_.Enter(); !status.ok()) return status;
     call_.NoteReceived(num_bytes);
     if (!parsed.ok()) return parsed;

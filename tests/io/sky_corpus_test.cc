@@ -12,6 +12,7 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "io/readback_exr.h"
 #include "optimizer/fit.h"
 #include "tests/io/exr_file.h"
