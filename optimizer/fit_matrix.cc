@@ -88,6 +88,15 @@ absl::StatusOr<LightMatrix> LayMatrix(const SearchInputs& inputs,
   } else if (summary.counts.used > 0 && options.metric == Metric::kL2) {
     const double energy = summary.tensor.Energy(map_from_normalized);
     matrix.figures.footprint.rms = std::sqrt(std::max(0.0, 0.5 * energy / summary.total_weight));
+    if (!std::isfinite(matrix.figures.footprint.rms)) {
+      return absl::InvalidArgumentError(
+          absl::StrFormat("light \"%s\": the summary's total_weight = %g is not that of its "
+                          "samples, whose energy is "
+                          "%g: it is damaged",
+                          light.name,
+                          summary.total_weight,
+                          energy));
+    }
   }
   return matrix;
 }

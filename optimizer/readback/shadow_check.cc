@@ -52,6 +52,8 @@ class DepthWalk {
     const Eigen::Vector3d step = (way.end - way.begin) / length;
     const int sign = step[major] > 0.0 ? 1 : -1;
     const int size = major == 0 ? readback_.width() : readback_.height();
+    // Rounding may have put its beginning anywhere.
+    if (!(std::abs(way.begin[major]) <= 2.0 * size)) return false;
     int column = static_cast<int>(std::floor(way.begin[major])) + sign * kFirstStep;
     // In front of the surface (> 0) or behind it, at the last four pixels.
     std::array<double, 4> front = {}, depth = {};

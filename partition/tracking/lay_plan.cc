@@ -2,9 +2,12 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
+#include "absl/status/status.h"
+#include "absl/strings/str_format.h"
 #include "geometry/homography.h"
 #include "optimizer/figures/figures.h"
 #include "optimizer/fit_matrix.h"
@@ -101,6 +104,10 @@ absl::StatusOr<LightPlan> LayPlan(const LightView& view,
           MeasureFigures(samples[k], maps[k].rays.map_from_ray, fit.metric, fit.along_edge_share);
     }
     LightMatrix& laid = plan.maps.back();
+    if (!std::isfinite(laid.figures.energy) || !std::isfinite(laid.figures.footprint.worst)) {
+      return absl::FailedPreconditionError(absl::StrFormat(
+          "light \"%s\": map %d is singular at the samples", view.light->name, index));
+    }
     if (!IsRedrawn(maps[k].action) && depths[k].Fits()) {
       laid.map_from_world.row(2) = maps[k].map_from_world.row(2);
     } else if (depths[k].IsAsked()) {
