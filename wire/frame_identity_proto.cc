@@ -44,7 +44,7 @@ absl::Status FramesFromProto(const v1::SummaryFile& proto,
                                   kHashBytes,
                                   most_frames));
   }
-  if (num_without < 0 || num_without + proto.frame_numbers_size() != num_frames) {
+  if (num_without < 0 || num_without != num_frames - proto.frame_numbers_size()) {
     return Refuse("frame_numbers and frames_without_number",
                   absl::StrFormat("are of %d and %d frames, want %d in all",
                                   proto.frame_numbers_size(),
