@@ -13,6 +13,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "cli/flags/choice_option.h"
+#include "cli/flags/number_checks.h"
 #include "cli/flags/size_flags.h"
 #include "jobs/compare/rows.h"
 
@@ -89,7 +90,7 @@ void DeclareMatrices(CLI::App* app, CompareFlags* flags) {
                   "Constant part of the practical bias, of the receivers' range of distances from "
                   "the light [0.0002]")
       ->type_name("SHARE")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(NumberIn(0.0, 1.0))
       ->group("Methods");
   app->add_option_function<int>(
          "--phases",

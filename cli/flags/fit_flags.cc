@@ -10,6 +10,7 @@
 #include "base/suggest.h"
 #include "cli/flags/choice_option.h"
 #include "cli/flags/frame_flag.h"
+#include "cli/flags/number_checks.h"
 #include "cli/flags/size_flags.h"
 #include "io/summary_file.h"
 
@@ -144,7 +145,7 @@ void DeclareReadbackFlags(CLI::App* app, const std::string& group, FitFlags* fla
                   "Pixels at this depth or beyond are background; inf: none before 1e9 [one "
                   "greatest depth that many pixels share, far beyond the rest]")
       ->type_name("DEPTH")
-      ->check(CLI::PositiveNumber)
+      ->check(NumberAboveZeroOrInfinite())
       ->group(group);
   app->add_option("--depth-channel",
                   flags->depth_channel,
@@ -223,14 +224,14 @@ void DeclareCameraExrFlags(CLI::App* app, const std::string& group, CameraExrOpt
       ->group(group);
   app->add_option("--near", camera->near, "Near clip plane, world units (NDC depth only)")
       ->type_name("DISTANCE")
-      ->check(CLI::PositiveNumber)
+      ->check(NumberAboveZero())
       ->group(group);
   AddDistance(app, "--far", &camera->far, "Far clip plane, world units, or inf (NDC depth only)")
       ->group(group);
   app->add_option(
          "--pixel-aspect", camera->pixel_aspect, "Width over height of a pixel [as the file says]")
       ->type_name("RATIO")
-      ->check(CLI::PositiveNumber)
+      ->check(NumberAboveZero())
       ->group(group);
 }
 
@@ -258,7 +259,7 @@ void DeclareMethodFlags(CLI::App* app, FitOptions* options) {
                   options->margin_percent,
                   "The map reaches this much beyond what it covers on every side [1]")
       ->type_name("PERCENT")
-      ->check(CLI::Range(0.0, 100.0))
+      ->check(NumberIn(0.0, 100.0))
       ->group(kMethodGroup);
   app->add_option("--min-samples",
                   options->samples.min_samples,
