@@ -215,7 +215,8 @@ void DeclareSizeFlags(CLI::App* app, CompareFlags* flags) {
          [flags](const std::string& text) {
            ParseInto("--screen", text, ParsePixelSize, &flags->screen);
          },
-         "The image whose wrong pixels are counted, pixels [750x750]")
+         "The image whose wrong pixels are counted, pixels [750 high and as wide as the camera's "
+         "file says; 750x750 where it says nothing]")
       ->type_name("WIDTHxHEIGHT")
       ->group(group);
   app->add_option_function<std::string>(
