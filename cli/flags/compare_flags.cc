@@ -14,6 +14,7 @@
 #include "absl/strings/str_split.h"
 #include "cli/flags/choice_option.h"
 #include "cli/flags/number_checks.h"
+#include "cli/flags/readback_flags.h"
 #include "cli/flags/size_flags.h"
 #include "jobs/compare/rows.h"
 

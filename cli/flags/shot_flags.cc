@@ -8,6 +8,7 @@
 #include "cli/flags/fit_inputs.h"
 #include "cli/flags/frame_inputs.h"
 #include "cli/flags/number_checks.h"
+#include "cli/flags/readback_flags.h"
 #include "io/summary_file.h"
 #include "jobs/fit_comparison.h"
 
