@@ -1,10 +1,12 @@
 #include "calls/bit_buffer.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "calls/grow.h"
+#include "geometry/light.h"
 
 namespace lightfit {
 namespace {
@@ -30,7 +32,100 @@ absl::Status Unannounced(const BitsHeader& header, const char* kind, const char*
                       kind));
 }
 
+// The lights whose planes are here.
+uint32_t LightsWithPlanes(const BitsFields& fields) {
+  uint32_t lights = 0;
+  for (int plane = 0; plane < std::min<int>(fields.planes.size(), kMaxLights); ++plane) {
+    if (!fields.planes[plane].empty()) lights |= uint32_t{1} << plane;
+  }
+  return lights;
+}
+
+absl::StatusOr<BitsHeader> BitsHeaderOf(const BitsFields& fields,
+                                        int num_lights,
+                                        int64_t num_pixels) {
+  const uint32_t all = ~uint32_t{0} >> (kMaxLights - num_lights);
+  BitsHeader header = {fields.name, fields.format, all, num_lights, num_pixels};
+  switch (fields.format) {
+    case v1::SHADOW_FORMAT_UNSPECIFIED:
+      if (!fields.bits.empty()) header.format = v1::SHADOW_FORMAT_BITS;
+      if (!fields.planes.empty()) header.format = v1::SHADOW_FORMAT_PLANES;
+      return header;
+    case v1::SHADOW_FORMAT_BITS:
+    case v1::SHADOW_FORMAT_PLANES:
+      return header;
+    default:
+      return absl::InvalidArgumentError(
+          absl::StrFormat("readback.%s_format = %d: this version does not know it, want "
+                          "SHADOW_FORMAT_BITS or SHADOW_FORMAT_PLANES",
+                          fields.name,
+                          fields.format));
+  }
+}
+
+// Bits that there may be none of, or of some lights alone.
+absl::StatusOr<BitsHeader> OptionalHeaderOf(const BitsFields& fields,
+                                            int num_lights,
+                                            int64_t num_pixels) {
+  absl::StatusOr<BitsHeader> header = BitsHeaderOf(fields, num_lights, num_pixels);
+  if (!header.ok()) return header.status();
+  if ((fields.lights & ~header->lights) != 0) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("readback.%s_lights = %#x: there are %d lights, want no bit beyond theirs",
+                        fields.name,
+                        fields.lights,
+                        num_lights));
+  }
+  if (fields.lights != 0) {
+    header->lights = fields.lights;
+  } else if (!fields.planes.empty()) {
+    header->lights = LightsWithPlanes(fields);
+  }
+  if (header->lights == 0) header->format = v1::SHADOW_FORMAT_UNSPECIFIED;
+  return header;
+}
+
 }  // namespace
+
+BitsFields ShadowFields(const v1::Readback& proto) {
+  return {"shadow", proto.shadow_format(), proto.shadow_bits(), proto.shadow_planes(), 0};
+}
+
+BitsFields FacingFields(const v1::Readback& proto) {
+  return {"facing",
+          proto.facing_format(),
+          proto.facing_bits(),
+          proto.facing_planes(),
+          proto.facing_lights()};
+}
+
+BitsFields MappedFields(const v1::Readback& proto) {
+  return {"mapped",
+          proto.mapped_format(),
+          proto.mapped_bits(),
+          proto.mapped_planes(),
+          proto.mapped_lights()};
+}
+
+absl::StatusOr<BitsHeader> ShadowHeaderFromProto(const v1::Readback& proto,
+                                                 int num_lights,
+                                                 int64_t num_pixels) {
+  absl::StatusOr<BitsHeader> header = BitsHeaderOf(ShadowFields(proto), num_lights, num_pixels);
+  if (header.ok() && header->is_absent()) header->format = v1::SHADOW_FORMAT_BITS;
+  return header;
+}
+
+absl::StatusOr<BitsHeader> FacingHeaderFromProto(const v1::Readback& proto,
+                                                 int num_lights,
+                                                 int64_t num_pixels) {
+  return OptionalHeaderOf(FacingFields(proto), num_lights, num_pixels);
+}
+
+absl::StatusOr<BitsHeader> MappedHeaderFromProto(const v1::Readback& proto,
+                                                 int num_lights,
+                                                 int64_t num_pixels) {
+  return OptionalHeaderOf(MappedFields(proto), num_lights, num_pixels);
+}
 
 absl::Status CheckPiece(absl::string_view field,
                         absl::string_view bytes,
@@ -67,6 +162,14 @@ absl::Status CheckArrived(absl::string_view field,
                                                     want,
                                                     count.product,
                                                     count.said_in));
+}
+
+absl::Status BitBuffer::Append(const BitsFields& fields) {
+  absl::Status status = AppendBits(fields.bits);
+  for (int plane = 0; plane < fields.planes.size() && status.ok(); ++plane) {
+    status = AppendPlane(plane, fields.planes[plane]);
+  }
+  return status;
 }
 
 absl::Status BitBuffer::AppendBits(absl::string_view bytes) {

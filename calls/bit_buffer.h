@@ -5,6 +5,8 @@
 // Out:  a word per pixel, light l in bit l.
 #pragma once
 
+#include <google/protobuf/repeated_field.h>
+
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -34,6 +36,31 @@ struct BitsHeader {
   int64_t buffer_bytes() const { return is_absent() ? 0 : bits_bytes(); }
 };
 
+// What a read-back says of one kind of bits.
+struct BitsFields {
+  const char* name;
+  v1::ShadowFormat format;
+  const std::string& bits;
+  const google::protobuf::RepeatedPtrField<std::string>& planes;
+  uint32_t lights;  // 0: not said
+};
+
+BitsFields ShadowFields(const v1::Readback& proto);
+BitsFields FacingFields(const v1::Readback& proto);
+BitsFields MappedFields(const v1::Readback& proto);
+
+// InvalidArgument for a format that is not known, and for lights that are not there. Every light
+// has a shadow; the others may be absent, or known of some lights alone.
+absl::StatusOr<BitsHeader> ShadowHeaderFromProto(const v1::Readback& proto,
+                                                 int num_lights,
+                                                 int64_t num_pixels);
+absl::StatusOr<BitsHeader> FacingHeaderFromProto(const v1::Readback& proto,
+                                                 int num_lights,
+                                                 int64_t num_pixels);
+absl::StatusOr<BitsHeader> MappedHeaderFromProto(const v1::Readback& proto,
+                                                 int num_lights,
+                                                 int64_t num_pixels);
+
 class BitBuffer {
  public:
   // Memory is taken as pixels arrive.
@@ -41,6 +68,7 @@ class BitBuffer {
       : header_(header), num_plane_bytes_(header.num_lights, 0) {}
 
   // InvalidArgument for what goes beyond the end, is of the other format or was not announced.
+  absl::Status Append(const BitsFields& fields);
   absl::Status AppendBits(absl::string_view bytes);
   absl::Status AppendPlane(int plane, absl::string_view bytes);
 

@@ -1,7 +1,5 @@
 #include "calls/pixel_buffer.h"
 
-#include <google/protobuf/repeated_field.h>
-
 #include <Eigen/Core>
 #include <algorithm>
 #include <bit>
@@ -41,97 +39,6 @@ absl::StatusOr<v1::DepthFormat> DepthFormatOf(const v1::Readback& proto) {
   }
 }
 
-// What a read-back says of one kind of bits.
-struct BitsFields {
-  const char* name;
-  v1::ShadowFormat format;
-  const std::string& bits;
-  const google::protobuf::RepeatedPtrField<std::string>& planes;
-  uint32_t lights;  // 0: not said
-};
-
-BitsFields ShadowFields(const v1::Readback& proto) {
-  return {"shadow", proto.shadow_format(), proto.shadow_bits(), proto.shadow_planes(), 0};
-}
-
-BitsFields FacingFields(const v1::Readback& proto) {
-  return {"facing",
-          proto.facing_format(),
-          proto.facing_bits(),
-          proto.facing_planes(),
-          proto.facing_lights()};
-}
-
-BitsFields MappedFields(const v1::Readback& proto) {
-  return {"mapped",
-          proto.mapped_format(),
-          proto.mapped_bits(),
-          proto.mapped_planes(),
-          proto.mapped_lights()};
-}
-
-// The lights whose planes are here.
-uint32_t LightsWithPlanes(const BitsFields& fields) {
-  uint32_t lights = 0;
-  for (int plane = 0; plane < std::min<int>(fields.planes.size(), kMaxLights); ++plane) {
-    if (!fields.planes[plane].empty()) lights |= uint32_t{1} << plane;
-  }
-  return lights;
-}
-
-absl::StatusOr<BitsHeader> BitsHeaderOf(const BitsFields& fields,
-                                        int num_lights,
-                                        int64_t num_pixels) {
-  const uint32_t all = ~uint32_t{0} >> (kMaxLights - num_lights);
-  BitsHeader header = {fields.name, fields.format, all, num_lights, num_pixels};
-  switch (fields.format) {
-    case v1::SHADOW_FORMAT_UNSPECIFIED:
-      if (!fields.bits.empty()) header.format = v1::SHADOW_FORMAT_BITS;
-      if (!fields.planes.empty()) header.format = v1::SHADOW_FORMAT_PLANES;
-      return header;
-    case v1::SHADOW_FORMAT_BITS:
-    case v1::SHADOW_FORMAT_PLANES:
-      return header;
-    default:
-      return absl::InvalidArgumentError(
-          absl::StrFormat("readback.%s_format = %d: this version does not know it, want "
-                          "SHADOW_FORMAT_BITS or SHADOW_FORMAT_PLANES",
-                          fields.name,
-                          fields.format));
-  }
-}
-
-// Every light has a shadow.
-absl::StatusOr<BitsHeader> ShadowHeaderOf(const v1::Readback& proto,
-                                          int num_lights,
-                                          int64_t num_pixels) {
-  absl::StatusOr<BitsHeader> header = BitsHeaderOf(ShadowFields(proto), num_lights, num_pixels);
-  if (header.ok() && header->is_absent()) header->format = v1::SHADOW_FORMAT_BITS;
-  return header;
-}
-
-// Bits that there may be none of, or of some lights alone.
-absl::StatusOr<BitsHeader> OptionalHeaderOf(const BitsFields& fields,
-                                            int num_lights,
-                                            int64_t num_pixels) {
-  absl::StatusOr<BitsHeader> header = BitsHeaderOf(fields, num_lights, num_pixels);
-  if (!header.ok()) return header.status();
-  if ((fields.lights & ~header->lights) != 0) {
-    return absl::InvalidArgumentError(
-        absl::StrFormat("readback.%s_lights = %#x: there are %d lights, want no bit beyond theirs",
-                        fields.name,
-                        fields.lights,
-                        num_lights));
-  }
-  if (fields.lights != 0) {
-    header->lights = fields.lights;
-  } else if (!fields.planes.empty()) {
-    header->lights = LightsWithPlanes(fields);
-  }
-  if (header->lights == 0) header->format = v1::SHADOW_FORMAT_UNSPECIFIED;
-  return header;
-}
-
 absl::Status InReadback(const absl::Status& status) {
   // Some messages of cameras begin with that word.
   const char* const prefix =
@@ -157,14 +64,6 @@ bool IsUsableAsIs(const BitsFields& fields, const BitsHeader& header) {
   if (header.is_absent()) return fields.bits.empty();
   return header.has_bits() && fields.planes.empty() &&
          static_cast<int64_t>(fields.bits.size()) == header.bits_bytes() && IsAligned(fields.bits);
-}
-
-absl::Status AppendTo(const BitsFields& fields, BitBuffer* buffer) {
-  absl::Status status = buffer->AppendBits(fields.bits);
-  for (int plane = 0; plane < fields.planes.size() && status.ok(); ++plane) {
-    status = buffer->AppendPlane(plane, fields.planes[plane]);
-  }
-  return status;
 }
 
 absl::Status AppendTo(const std::string& bits,
@@ -216,11 +115,11 @@ absl::StatusOr<ReadbackHeader> ReadbackHeaderFromProto(const v1::Readback& proto
   if (!camera.ok()) return InReadback(camera.status());
   const absl::StatusOr<v1::DepthFormat> depth_format = DepthFormatOf(proto);
   if (!depth_format.ok()) return depth_format.status();
-  absl::StatusOr<BitsHeader> shadow = ShadowHeaderOf(proto, num_lights, num_pixels);
+  absl::StatusOr<BitsHeader> shadow = ShadowHeaderFromProto(proto, num_lights, num_pixels);
   if (!shadow.ok()) return shadow.status();
-  absl::StatusOr<BitsHeader> facing = OptionalHeaderOf(FacingFields(proto), num_lights, num_pixels);
+  absl::StatusOr<BitsHeader> facing = FacingHeaderFromProto(proto, num_lights, num_pixels);
   if (!facing.ok()) return facing.status();
-  absl::StatusOr<BitsHeader> mapped = OptionalHeaderOf(MappedFields(proto), num_lights, num_pixels);
+  absl::StatusOr<BitsHeader> mapped = MappedHeaderFromProto(proto, num_lights, num_pixels);
   if (!mapped.ok()) return mapped.status();
   const absl::StatusOr<FineCoverHeader> fine = FineCoverHeaderFromProto(proto, num_lights, limits);
   if (!fine.ok()) return fine.status();
@@ -264,9 +163,9 @@ PixelBuffer::PixelBuffer(const ReadbackHeader& header)
 
 absl::Status PixelBuffer::Append(const v1::Readback& proto) {
   absl::Status status = AppendDepth(proto.depth());
-  if (status.ok()) status = AppendTo(ShadowFields(proto), &shadow_);
-  if (status.ok()) status = AppendTo(FacingFields(proto), &facing_);
-  if (status.ok()) status = AppendTo(MappedFields(proto), &mapped_);
+  if (status.ok()) status = shadow_.Append(ShadowFields(proto));
+  if (status.ok()) status = facing_.Append(FacingFields(proto));
+  if (status.ok()) status = mapped_.Append(MappedFields(proto));
   if (status.ok()) status = fine_.Append(proto.fine_cover());
   return status;
 }

@@ -7,7 +7,6 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "base/suggest.h"
-#include "cli/flags/scene_needs.h"
 #include "cli/flags/standard_streams.h"
 #include "optimizer/tracking/keep_matrix.h"
 #include "render/sight.h"
@@ -21,8 +20,9 @@ absl::Status ReadSceneInputs(const CompareFlags& flags, CompareInputs* inputs) {
   if (!lights.ok()) return lights.status();
   inputs->lights = *std::move(lights);
   inputs->light_status.resize(inputs->lights.size());
-  const absl::StatusOr<Camera> camera =
-      MakeViewCamera(flags.scene, flags.screen.width, flags.screen.height);
+  const PixelSize screen =
+      flags.screen.value_or(DefaultImageSize(flags.scene, kDefaultScreenHeight));
+  const absl::StatusOr<Camera> camera = MakeViewCamera(flags.scene, screen.width, screen.height);
   if (!camera.ok()) return camera.status();
   absl::StatusOr<LoadedScene> scene = LoadScene(flags.scene);
   if (!scene.ok()) return scene.status();
@@ -32,7 +32,7 @@ absl::Status ReadSceneInputs(const CompareFlags& flags, CompareInputs* inputs) {
     inputs->warnings.push_back(absl::StrFormat(
         "%d triangles without area or with bad coordinates ignored", inputs->scene->num_dropped));
   }
-  const PixelSize readback = flags.readback.value_or(DefaultReadbackSize(flags.screen));
+  const PixelSize readback = flags.readback.value_or(DefaultReadbackSize(screen));
   absl::StatusOr<CompareStage> stage =
       MakeStage(inputs->scene->caster, *camera, readback.width, readback.height);
   if (!stage.ok()) return stage.status();

@@ -11,7 +11,7 @@
 #include "absl/status/statusor.h"
 #include "cli/flags/compare_flags.h"
 #include "cli/flags/fit_inputs.h"
-#include "cli/flags/scene_flags.h"
+#include "cli/flags/scene_inputs.h"
 #include "jobs/compare/rows.h"
 #include "jobs/compare/stage.h"
 

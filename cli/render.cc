@@ -1,8 +1,6 @@
 #include "cli/render.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -18,93 +16,20 @@
 #include "base/table.h"
 #include "base/text_file.h"
 #include "cli/exit_code.h"
-#include "cli/flags/scene_flags.h"
-#include "cli/flags/scene_needs.h"
+#include "cli/flags/render_flags.h"
+#include "cli/flags/scene_inputs.h"
 #include "cli/unusable_lights.h"
-#include "geometry/sized_camera.h"
-#include "io/camera_file.h"
 #include "io/readback_exr_write.h"
 #include "picture/canvas.h"
 #include "picture/png.h"
 #include "picture/render_page.h"
 #include "render/readback_image.h"
 #include "render/sight.h"
-#include "scenes/gltf_view.h"
 #include "wire/light_proto.h"
 #include "wire/proto_json.h"
 
 namespace lightfit::cli {
 namespace {
-
-constexpr char kExamples[] =
-    "Examples:\n"
-    "  lightfit render room.glb --camera -2.5,1.6,-3:2,0.8,2 --light lamp=point:-1,2,0 -o "
-    "room.exr\n"
-    "  lightfit render generate --camera 0,1.7,18:0,0.5,0 --random-lights 3 -o floor.exr \\\n"
-    "      --lights-out floor.json --picture floor.png --picture-size 1280x720\n"
-    "  lightfit fit floor.exr --lights floor.json\n"
-    "\n"
-    "Units: positions in world units, angles in degrees, images in pixels. The read-back holds\n"
-    "depth along the view (Z), one channel shadow.LIGHT per light (1 where a surface that faces\n"
-    "the light is in shadow) and the camera.";
-
-struct RenderFlags {
-  SceneFlags scene;
-  PixelSize size;  // 0x0: 180 pixels high
-  std::string output_path;
-  std::string picture_path;
-  PixelSize picture_size;  // 0x0: as `size`
-  std::string picture_light;
-  std::string lights_path;
-  bool quiet = false;
-};
-
-void AddPixelSize(CLI::App* app,
-                  const std::string& flag,
-                  const std::string& meaning,
-                  PixelSize* size) {
-  app->add_option_function<std::string>(
-         flag,
-         [flag, size](const std::string& text) {
-           const absl::StatusOr<PixelSize> parsed = ParsePixelSize(text);
-           if (!parsed.ok()) {
-             throw CLI::ValidationError(flag, std::string(parsed.status().message()));
-           }
-           *size = *parsed;
-         },
-         meaning)
-      ->type_name("WIDTHxHEIGHT")
-      ->group("Output");
-}
-
-void DeclareFlags(CLI::App* app, RenderFlags* flags) {
-  DeclareSceneFlags(app, &flags->scene);
-  const std::string group = "Output";
-  app->add_option("-o,--output", flags->output_path, "Write the read-back to this file")
-      ->type_name("FILE.exr")
-      ->group(group);
-  AddPixelSize(app,
-               "--size",
-               "Size of the read-back in pixels [180x180, or as wide as the "
-               "camera of a glTF file says]",
-               &flags->size);
-  app->add_option("--lights-out",
-                  flags->lights_path,
-                  "Write the lights to this file, for lightfit fit --lights")
-      ->type_name("FILE.json")
-      ->group(group);
-  app->add_option("--picture", flags->picture_path, "Draw the scene with the shadows of one light")
-      ->type_name("FILE.png")
-      ->group(group);
-  AddPixelSize(
-      app, "--picture-size", "Size of the picture in pixels [as --size]", &flags->picture_size);
-  app->add_option("--picture-light", flags->picture_light, "Which light to draw [the first]")
-      ->type_name("LIGHT")
-      ->group(group);
-  app->add_flag("-q,--quiet", flags->quiet, "No table and no progress; errors and warnings only")
-      ->group(group);
-  app->footer(kExamples);
-}
 
 PixelSize PictureSize(const RenderFlags& flags) {
   return flags.picture_size.width > 0 ? flags.picture_size : flags.size;
@@ -151,17 +76,6 @@ absl::StatusOr<Light> PictureLight(const RenderFlags& flags, const std::vector<L
                                                  ": there is no such light, want one of ",
                                                  absl::StrJoin(names, ", "),
                                                  DidYouMean(flags.picture_light, names)));
-}
-
-// 180 pixels high, and as wide as the camera says.
-PixelSize DefaultSize(const SceneFlags& flags) {
-  constexpr int kHeight = 180;
-  const std::string path = CameraPath(flags);
-  const absl::StatusOr<StatedCamera> file =
-      flags.view.has_value() || !IsGltf(path) ? StatedCamera() : ReadCameraFile(path);
-  const double ratio = file.ok() && !HasSize(file->camera) ? FrameRatio(file->camera) : 0.0;
-  const double width = ratio > 0.0 ? std::clamp(std::round(kHeight * ratio), 1.0, 8192.0) : kHeight;
-  return {static_cast<int>(width), kHeight};
 }
 
 // What is taken from the scene's file beside its triangles; empty when nothing.
@@ -309,7 +223,7 @@ absl::Status WriteOutputs(const RenderFlags& flags, const Inputs& inputs, const 
 
 int RunRender(RenderFlags flags) {
   if (absl::Status status = CheckNeeds(flags); !status.ok()) return Fail(kExitBadInput, status);
-  if (flags.size.width == 0) flags.size = DefaultSize(flags.scene);
+  if (flags.size.width == 0) flags.size = DefaultImageSize(flags.scene, kDefaultReadbackHeight);
   if (absl::Status status = CheckOutputs(flags); !status.ok()) return Fail(kExitBadInput, status);
   const absl::StatusOr<Inputs> inputs = ReadInputs(flags);
   if (!inputs.ok()) return Fail(kExitBadInput, inputs.status());
@@ -331,7 +245,7 @@ int RunRender(RenderFlags flags) {
 
 std::function<int()> DeclareRender(CLI::App* app) {
   const auto flags = std::make_shared<RenderFlags>();
-  DeclareFlags(app, flags.get());
+  DeclareRenderFlags(app, flags.get());
   return [flags] { return RunRender(*flags); };
 }
 

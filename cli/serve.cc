@@ -7,13 +7,16 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <string>
 #include <thread>
+#include <type_traits>
 
 #include "absl/strings/str_cat.h"
 #include "cli/exit_code.h"
 #include "cli/flags/choice_option.h"
+#include "cli/flags/number_checks.h"
 #include "server/server.h"
 
 namespace lightfit::cli {
@@ -43,9 +46,13 @@ void AddScaled(CLI::App* app,
                const std::string& unit,
                const std::string& meaning,
                const Store& store) {
-  app->add_option_function<Number>(flag, store, absl::StrCat(meaning, " [", number, "]"))
-      ->type_name(unit)
-      ->group(group);
+  CLI::Option* option =
+      app->add_option_function<Number>(flag, store, absl::StrCat(meaning, " [", number, "]"))
+          ->type_name(unit)
+          ->group(group);
+  if constexpr (std::is_floating_point_v<Number>) {
+    option->check(NumberIn(0.0, std::numeric_limits<Number>::infinity()));
+  }
 }
 
 void DeclareAddress(CLI::App* app, ServeFlags* flags) {

@@ -5,17 +5,10 @@
 // --summary`.
 #pragma once
 
-#include "cli/flags/fit_flags.h"
+#include "cli/flags/summarize_flags.h"
 #include "cli/verb.h"
 
 namespace lightfit::cli {
-
-struct SummarizeFlags {
-  std::vector<std::string> inputs;  // read-backs and summary files
-  std::string output_path;
-  std::string weigh_by_path;
-  FitFlags fit;  // of it: lights, --only, the read-back's channels and camera, metric, cover, quiet
-};
 
 std::function<int()> DeclareSummarize(CLI::App* app);
 

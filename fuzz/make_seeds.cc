@@ -14,9 +14,12 @@
 #include "calls/allocate_call.h"
 #include "calls/fit_call.h"
 #include "calls/pixel_buffer.h"
+#include "calls/summarize_call.h"
 #include "calls/track_session.h"
+#include "fuzz/calls.h"
 #include "fuzz/exr_variants.h"
 #include "fuzz/inputs.pb.h"
+#include "fuzz/scene_seeds.h"
 #include "fuzz/small_readback.h"
 #include "io/readback_exr_write.h"
 #include "io/summary_file.h"
@@ -66,6 +69,26 @@ void UseQuickSearch(v1::AllocateRequest* request) {
   request->mutable_rules()->set_max_side(1024);
 }
 
+using Matrices = google::protobuf::RepeatedPtrField<v1::CandidateMatrix>;
+
+// In both of their forms.
+Matrices MatricesOf(const v1::FitResult& result) {
+  Matrices matrices;
+  for (const v1::LightResult& light : result.lights()) {
+    if (light.status().code() != 0) continue;
+    v1::CandidateMatrix& candidate = *matrices.Add();
+    candidate.set_light(light.name());
+    *candidate.mutable_map() = light.map();
+    if (matrices.size() == 1) {
+      *candidate.mutable_map_from_world() = light.map_from_world();
+    } else {
+      *candidate.mutable_clip_from_world() = light.clip_from_world();
+      *candidate.mutable_clip() = light.clip();
+    }
+  }
+  return matrices;
+}
+
 SummarySet SummariesOf(const SmallReadback& yard, const FitOptions& options) {
   std::vector<LightSummary> lights;
   for (const Light& light : yard.lights) {
@@ -100,20 +123,10 @@ class Seeds {
     WriteStreams(fit);
 
     v1::EvaluateRequest evaluate = RequestOf<v1::EvaluateRequest>(yard_);
-    const v1::FitResult result = AnswerFit(fit, CallContext()).value();
-    for (const v1::LightResult& light : result.lights()) {
-      if (light.status().code() != 0) continue;
-      v1::CandidateMatrix& candidate = *evaluate.add_matrices();
-      candidate.set_light(light.name());
-      *candidate.mutable_map() = light.map();
-      if (evaluate.matrices_size() == 1) {
-        *candidate.mutable_map_from_world() = light.map_from_world();
-      } else {
-        *candidate.mutable_clip_from_world() = light.clip_from_world();
-        *candidate.mutable_clip() = light.clip();
-      }
-    }
+    *evaluate.mutable_matrices() = MatricesOf(AnswerFit(fit, CallContext()).value());
     Save("evaluate/yard", evaluate);
+    WriteSummarize(evaluate.matrices());
+    WriteCompare(evaluate.matrices());
 
     v1::AllocateRequest allocate = RequestOf<v1::AllocateRequest>(yard_);
     allocate.set_budget_texels(1 << 17);
@@ -203,81 +216,8 @@ class Seeds {
     }
   }
 
-  void WritePly() const {
-    Write(folder_ + "/ply/text",
-          "ply\nformat ascii 1.0\ncomment two triangles and a square\nelement vertex 4\n"
-          "property float x\nproperty float y\nproperty float z\n"
-          "element face 3\nproperty list uchar int vertex_indices\nend_header\n"
-          "0 0 0\n1 0 0\n1 1 0\n0 1 0.5\n3 0 1 2\n3 0 2 3\n4 0 1 2 3\n");
-    std::string binary =
-        "ply\nformat binary_little_endian 1.0\nelement vertex 3\n"
-        "property double x\nproperty float y\nproperty short z\n"
-        "element face 1\nproperty uchar flags\nproperty list int uint vertex_index\nend_header\n";
-    for (int i = 0; i < 3; ++i) {
-      const double x = i;
-      const float y = i == 1 ? 1.0F : 0.0F;
-      const int16_t z = 2;
-      binary.append(reinterpret_cast<const char*>(&x), sizeof(x));
-      binary.append(reinterpret_cast<const char*>(&y), sizeof(y));
-      binary.append(reinterpret_cast<const char*>(&z), sizeof(z));
-    }
-    binary.push_back('\1');
-    for (const int32_t word : {3, 0, 1, 2}) {
-      binary.append(reinterpret_cast<const char*>(&word), sizeof(word));
-    }
-    Write(folder_ + "/ply/binary", binary);
-  }
-
-  void WriteObj() const {
-    Write(
-        folder_ + "/obj/forms",
-        "# a square, a notch and what is left out\nv 0 0 0\nv +1 .5 0 1.0\nv 1e0 1. 0 0.1 0.2 0.3\n"
-        "v 0 1 0\nv .5 .6 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2//1 3/1 -2\nf 1 2 \\\n 3 5 4\nl 1 2\n");
-  }
-
-  void WriteGlb() const {
-    // Three corners, three indices, weights and joints; everything may be taken for anything.
-    std::string chunk;
-    const float numbers[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 0, 0, 0};
-    chunk.append(reinterpret_cast<const char*>(numbers), sizeof(numbers));
-    const uint16_t indices[] = {0, 1, 2, 0};
-    chunk.append(reinterpret_cast<const char*>(indices), sizeof(indices));
-    const auto save = [this, &chunk](const char* name, absl::string_view nodes) {
-      Write(absl::StrCat(folder_, "/glb/", name),
-            absl::StrCat(
-                R"({"asset":{"version":"2.0"},)",
-                nodes,
-                R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},)"
-                R"({"bufferView":1,"componentType":5123,"count":3,"type":"SCALAR"},)"
-                R"({"componentType":5121,"count":3,"type":"VEC4"},)"
-                R"({"componentType":5126,"count":3,"type":"VEC4","sparse":{"count":1,)"
-                R"("indices":{"bufferView":1,"componentType":5123},)"
-                R"("values":{"bufferView":0,"byteOffset":36}}}],)"
-                R"("bufferViews":[{"buffer":0,"byteLength":52},)"
-                R"({"buffer":0,"byteOffset":52,"byteLength":6}],)"
-                R"("buffers":[{"byteLength":60}]})",
-                absl::string_view("\0", 1),
-                chunk));
-    };
-    const std::string mesh =
-        R"("meshes":[{"weights":[0.5],"primitives":[{"attributes":{"POSITION":0,"JOINTS_0":2,)"
-        R"("WEIGHTS_0":3},"indices":1,"targets":[{"POSITION":0}]},{"mode":5,)"
-        R"("attributes":{"POSITION":0}}]}],)";
-    save("nodes", R"("nodes":[{"mesh":0,"children":[1]},{"mesh":0,"scale":[2,2,2]}],)" + mesh);
-    save(
-        "skin",
-        R"("nodes":[{"mesh":0,"skin":0},{"rotation":[0,0,1,0]}],"skins":[{"joints":[1]}],)" + mesh);
-    save("instances",
-         R"("nodes":[{"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":)"
-         R"({"TRANSLATION":0,"ROTATION":3}}}}],)" +
-             mesh);
-    save(
-        "view",
-        R"("nodes":[{"camera":0,"extensions":{"KHR_lights_punctual":{"light":0}}},)"
-        R"({"name":"sun","extensions":{"KHR_lights_punctual":{"light":1}}}],)"
-        R"("cameras":[{"type":"perspective","perspective":{"yfov":1,"aspectRatio":1.5,"znear":1}}],)"
-        R"("extensions":{"KHR_lights_punctual":{"lights":[{"type":"spot"},)"
-        R"({"type":"directional"}]}},)");
+  void WriteScenes() const {
+    for (const auto& [name, bytes] : SceneSeeds()) Write(absl::StrCat(folder_, "/", name), bytes);
   }
 
   void WriteExr() const {
@@ -294,6 +234,43 @@ class Seeds {
 
   void SaveJson(const std::string& name, const google::protobuf::Message& message) const {
     Write(absl::StrCat(folder_, "/", name), ProtoToJson(message).value());
+  }
+
+  // A read-back, one with summaries in both forms, and summaries alone.
+  void WriteSummarize(const Matrices& matrices) const {
+    v1::SummarizeRequest request = RequestOf<v1::SummarizeRequest>(yard_);
+    request.set_frame_number(7.25);
+    ShortenSearch(request.mutable_options());  // as the target does, so that summaries add up
+    Save("summarize/yard", request);
+    v1::SummarizeRequest weighed = request;
+    *weighed.mutable_weigh_by() = matrices;
+    Save("summarize/weighed", weighed);
+    v1::SummarizeRequest squares = request;
+    squares.mutable_options()->set_metric(v1::METRIC_L2);
+    UseOtherForms(yard_, squares.mutable_readback());
+    Save("summarize/squares", squares);
+    const v1::SummarizeResult first = AnswerSummarize(request, CallContext()).value();
+    request.set_frame_number(8.0);
+    request.add_summary_files(first.summary_file());
+    Save("summarize/added", request);
+    *request.add_summaries() = AnswerSummarize(request, CallContext()).value().summary();
+    request.clear_readback();
+    request.clear_lights();
+    Save("summarize/frame_twice", request);
+    request.clear_summary_files();
+    Save("summarize/summaries", request);
+  }
+
+  void WriteCompare(const Matrices& matrices) const {
+    v1::CompareRequest request = RequestOf<v1::CompareRequest>(yard_);
+    *request.mutable_map() = SmallMap();
+    Save("compare/yard", request);
+    v1::GivenMatrices& given = *request.add_given();
+    given.set_name("engine");
+    *given.mutable_matrices() = matrices;
+    *request.mutable_options() = FitOptionsToProto(FitOptions::AsPublished());
+    UseOtherForms(yard_, request.mutable_readback());
+    Save("compare/given", request);
   }
 
   // One that goes on from what another has remembered.
@@ -382,8 +359,6 @@ int main(int argc, char** argv) {
   seeds.WriteCalls();
   seeds.WriteSummaries();
   seeds.WriteJson();
-  seeds.WritePly();
-  seeds.WriteObj();
-  seeds.WriteGlb();
+  seeds.WriteScenes();
   seeds.WriteExr();
 }

@@ -35,8 +35,7 @@ constexpr int kTitleSize = 26;
 constexpr int kNameSize = 19;
 constexpr int kCaptionSize = 15;
 
-constexpr int kMostTitleCharacters = 40;
-constexpr int kMostNameCharacters = 24;
+constexpr int kMostNameCharacters = 24;  // in the chart
 
 constexpr int kMaxColumns = 4;
 constexpr int kCropPixels = 62;  // about the crop's width in image pixels
@@ -96,12 +95,8 @@ class Page {
   Canvas TakeCanvas() { return std::move(canvas_); }
 
   void DrawTitle() {
-    Text(kMargin,
-         kMargin + 18,
-         absl::StrCat(Shortened(options_.title, kMostTitleCharacters),
-                      ", ",
-                      Shortened(light_.light.name, kMostTitleCharacters)),
-         {.size_px = kTitleSize, .color = kTextColor, .bold = true});
+    const TextStyle title = {.size_px = kTitleSize, .color = kTextColor, .bold = true};
+    Text(kMargin, kMargin + 18, TitleText(title), title);
     const Camera& camera = stage_.screen.camera;
     Text(
         kMargin,
@@ -144,11 +139,9 @@ class Page {
                   static_cast<double>(CountOf(light_.lightfit(), options_.bias)));
       if (ratio.has_value()) absl::StrAppend(&caption, ", ", FigureText(*ratio), " x lightfit");
     }
-    std::string title = Shortened(row.name, kMostNameCharacters);
-    if (row.drawn.has_other_texels) {
-      absl::StrAppend(&title, " (", NumTexels(row.drawn), " texels)");
-    }
-    Header(title, caption, is_ours ? kGainColor : kTextColor);
+    const std::string texels =
+        row.drawn.has_other_texels ? absl::StrCat(" (", NumTexels(row.drawn), " texels)") : "";
+    Header(row.name, caption, is_ours ? kGainColor : kTextColor, texels);
     DrawShadows(
         ShadowsOf(row, options_.bias),
         num_maps > 1 ? AskedMaps(row.drawn, light_.light, stage_.screen) : std::vector<int>());
@@ -215,8 +208,27 @@ class Page {
     typeface_.Draw(x, baseline, text, style, &canvas_);
   }
 
-  void Header(const std::string& name, const std::string& caption, Rgb color) {
-    Text(X(), PanelY() - 32, name, {.size_px = kNameSize, .color = color, .bold = true});
+  // The scene and the light, each shortened where there is no room for both.
+  std::string TitleText(const TextStyle& style) const {
+    constexpr char kComma[] = ", ";
+    const int room = layout_.width() - 2 * kMargin - typeface_.Width(kComma, style);
+    const int others = room - typeface_.Width(options_.title, style);
+    const std::string light =
+        typeface_.Fitted(light_.light.name, std::max(others, room / 2), style);
+    return absl::StrCat(
+        typeface_.Fitted(options_.title, room - typeface_.Width(light, style), style),
+        kComma,
+        light);
+  }
+
+  // `more` follows the name, which is shortened where the panel is too narrow for both.
+  void Header(const std::string& name,
+              const std::string& caption,
+              Rgb color,
+              const std::string& more = "") {
+    const TextStyle style = {.size_px = kNameSize, .color = color, .bold = true};
+    const int room = layout_.panel_width - typeface_.Width(more, style);
+    Text(X(), PanelY() - 32, absl::StrCat(typeface_.Fitted(name, room, style), more), style);
     Text(X(), PanelY() - 11, caption, {.size_px = kCaptionSize, .color = kFaintTextColor});
   }
 

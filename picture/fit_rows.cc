@@ -111,7 +111,8 @@ FitRows::FitRows(const FitLayout& layout,
       canvas_(layout.width, height, kPageColor) {}
 
 void FitRows::DrawTitle(const std::string& title, const std::string& sizes) {
-  Text(kMargin, kMargin + 20, title, {.size_px = kTitleSize, .color = kTextColor, .bold = true});
+  const TextStyle style = {.size_px = kTitleSize, .color = kTextColor, .bold = true};
+  Text(kMargin, kMargin + 20, typeface_.Fitted(title, layout_.width - 2 * kMargin, style), style);
   Text(layout_.width - kMargin,
        kMargin + 18,
        sizes,

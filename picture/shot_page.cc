@@ -95,12 +95,12 @@ LineChart ChartOf(const ShotJob& job, const ShotRows& rows, size_t light, const 
 }
 
 void DrawTitle(const ShotJob& job, const Typeface& typeface, Canvas* canvas) {
-  const std::string title = absl::StrFormat("%s: %d %s, %s",
-                                            job.name,
-                                            job.frames.size(),
-                                            job.frames.size() == 1 ? "frame" : "frames",
-                                            MapsText(job));
-  typeface.Draw(kMargin, 42, title, {.size_px = 24, .color = kTextColor, .bold = true}, canvas);
+  const TextStyle bold = {.size_px = 24, .color = kTextColor, .bold = true};
+  const std::string what = absl::StrFormat(
+      ": %d %s, %s", job.frames.size(), job.frames.size() == 1 ? "frame" : "frames", MapsText(job));
+  const int room = canvas->width() - 2 * kMargin - typeface.Width(what, bold);
+  typeface.Draw(
+      kMargin, 42, absl::StrCat(typeface.Fitted(job.name, room, bold), what), bold, canvas);
   int x = kMargin;
   const int baseline = 76;
   const TextStyle style = {.size_px = 16, .color = kTextColor};

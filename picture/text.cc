@@ -12,6 +12,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
+#include "base/table.h"
 #include "wire/utf8.h"
 
 namespace lightfit {
@@ -115,6 +116,20 @@ int Typeface::Width(absl::string_view text, const TextStyle& style) const {
   cairo_text_extents_t extents = {};
   cairo_scaled_font_text_extents(Scaled(style).get(), DrawableText(text).c_str(), &extents);
   return static_cast<int>(std::ceil(extents.x_advance));
+}
+
+std::string Typeface::Fitted(absl::string_view text, int max_width, const TextStyle& style) const {
+  if (Width(text, style) <= max_width) return std::string(text);
+  size_t fits = 0, most = text.size();
+  while (fits < most) {
+    const size_t middle = most - (most - fits) / 2;
+    if (Width(Shortened(text, middle), style) <= max_width) {
+      fits = middle;
+    } else {
+      most = middle - 1;
+    }
+  }
+  return Shortened(text, fits);
 }
 
 std::vector<std::string> Typeface::Wrapped(absl::string_view text,

@@ -45,6 +45,10 @@ class Typeface {
   // Pixels from the text's left end to its right end.
   int Width(absl::string_view text, const TextStyle& style) const;
 
+  // The text, or its beginning and end with "..." between where it would be wider than `max_width`
+  // pixels. Eight characters stay at least.
+  std::string Fitted(absl::string_view text, int max_width, const TextStyle& style) const;
+
   // Lines of it, broken at spaces so that none is wider than `max_width` pixels.
   std::vector<std::string> Wrapped(absl::string_view text,
                                    int max_width,

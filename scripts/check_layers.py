@@ -69,7 +69,7 @@ MAY_INCLUDE = {
     "cli": f"{EVERYTHING_BELOW_CLI} cli/*",
     "python": f"{IO} jobs calls calls/compare",
     "examples": f"{CORE} render render/generator lightfit",
-    "fuzz": f"{IO} jobs scenes render calls",
+    "fuzz": f"{IO} jobs scenes render calls calls/compare",
     "bench": f"{JOBS} methods partition/* scenes render render/* picture tests",
     "bench/service.cc": f"{JOBS} bench calls server tests",
     "tests": f"{EVERYTHING_BELOW_CLI} io/exr cli cli/*",

@@ -12,6 +12,7 @@
 #include "base/number.h"
 #include "base/suggest.h"
 #include "cli/flags/choices.h"
+#include "cli/flags/readback_flags.h"
 #include "cli/flags/size_flags.h"
 
 namespace lightfit::cli {

@@ -13,6 +13,8 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "cli/flags/choice_option.h"
+#include "cli/flags/number_checks.h"
+#include "cli/flags/readback_flags.h"
 #include "cli/flags/size_flags.h"
 #include "jobs/compare/rows.h"
 
@@ -89,7 +91,7 @@ void DeclareMatrices(CLI::App* app, CompareFlags* flags) {
                   "Constant part of the practical bias, of the receivers' range of distances from "
                   "the light [0.0002]")
       ->type_name("SHARE")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(NumberIn(0.0, 1.0))
       ->group("Methods");
   app->add_option_function<int>(
          "--phases",
@@ -214,7 +216,8 @@ void DeclareSizeFlags(CLI::App* app, CompareFlags* flags) {
          [flags](const std::string& text) {
            ParseInto("--screen", text, ParsePixelSize, &flags->screen);
          },
-         "The image whose wrong pixels are counted, pixels [750x750]")
+         "The image whose wrong pixels are counted, pixels [750 high and as wide as the camera's "
+         "file says; 750x750 where it says nothing]")
       ->type_name("WIDTHxHEIGHT")
       ->group(group);
   app->add_option_function<std::string>(

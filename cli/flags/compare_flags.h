@@ -35,6 +35,8 @@ struct CrawlFlags {
   std::string next_readback_path;
 };
 
+inline constexpr int kDefaultScreenHeight = 750;  // pixels
+
 struct CompareFlags {
   SceneFlags scene;  // its positional may be a read-back
 
@@ -42,7 +44,7 @@ struct CompareFlags {
   // understood.
   FitFlags fit;
 
-  PixelSize screen = {750, 750};
+  std::optional<PixelSize> screen;    // absent: DefaultImageSize(), kDefaultScreenHeight high
   std::optional<PixelSize> readback;  // absent: DefaultReadbackSize()
   MapSize map = FitFlags().map;
   std::vector<MatrixFlag> matrices;

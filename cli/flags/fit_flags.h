@@ -63,16 +63,11 @@ struct FitFlags {
 // that do not go together are refused.
 void DeclareFitFlags(CLI::App* app, FitFlags* flags);
 
-// Parts of it, for verbs that fit or read a read-back too: which of the lights; what the channels
-// of the read-back mean; its camera; what the camera's attributes in its header mean; how it is
-// fitted, and of that what its samples are summed by; the map's size and clip space; clip space
-// alone; whether tables are explained. The border that `options` has when the method is declared is
-// the default.
+// Parts of it, for verbs that fit too (readback_flags.h has those about the read-back): which of
+// the lights; how a light is fitted, and of that what its samples are summed by; the map's size and
+// clip space; clip space alone; whether tables are explained. The border that `options` has when
+// the method is declared is the default.
 void DeclareOnlyFlag(CLI::App* app, const std::string& group, std::vector<std::string>* only);
-void DeclareReadbackFlags(CLI::App* app, const std::string& group, FitFlags* flags);
-void DeclareCoverReadbackFlag(CLI::App* app, const std::string& group, FitFlags* flags);
-void DeclareCameraFlags(CLI::App* app, const std::string& group, FitFlags* flags);
-void DeclareCameraExrFlags(CLI::App* app, const std::string& group, CameraExrOptions* camera);
 void DeclareMethodFlags(CLI::App* app, FitOptions* options);
 void DeclareSummingFlags(CLI::App* app, FitOptions* options);
 void DeclareMapFlags(CLI::App* app, const std::string& group, FitFlags* flags);

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "absl/strings/str_cat.h"
+#include "cli/flags/number_checks.h"
 #include "cli/flags/size_flags.h"
 #include "optimizer/sizing/map_sizes.h"
 #include "partition/plan.h"
@@ -50,7 +51,7 @@ void DeclareMapsFlags(CLI::App* app, PlanFlags* flags) {
                   "With --maps: half the width of the shadow filter, texels; look-ups keep so far "
                   "from the edges of every map [0]")
       ->type_name("TEXELS")
-      ->check(CLI::Range(0.0, 0.5 * kMaxMapSide))
+      ->check(NumberIn(0.0, 0.5 * kMaxMapSide))
       ->group(kGroup);
 }
 

@@ -1,38 +1,24 @@
 #include "cli/flags/scene_flags.h"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <set>
 #include <utility>
 
 #include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
 #include "base/suggest.h"
 #include "cli/flags/fit_flags.h"
-#include "cli/flags/fit_inputs.h"
 #include "cli/flags/frame_flag.h"
 #include "cli/flags/size_flags.h"
-#include "geometry/resized_camera.h"
-#include "geometry/sized_camera.h"
-#include "io/camera_file.h"
-#include "render/random_suns.h"
 #include "scenes/gltf_view.h"
-#include "scenes/scene_file.h"
 
 namespace lightfit::cli {
 namespace {
 
 constexpr int kMaxRandomLights = 100'000;
 constexpr char kGenerate[] = "generate";
-
-std::string PointText(const Eigen::Vector3d& point) {
-  return absl::StrFormat("(%g, %g, %g)", point.x(), point.y(), point.z());
-}
 
 absl::StatusOr<Eigen::Vector3d> ParseVector(const std::string& text) {
   const std::vector<std::string> numbers = absl::StrSplit(text, ',');
@@ -88,35 +74,6 @@ void DeclareCamera(CLI::App* app, SceneFlags* flags) {
                    &flags->frame);
 }
 
-absl::StatusOr<Camera> CameraFromFile(const SceneFlags& flags,
-                                      const std::string& path,
-                                      int width,
-                                      int height) {
-  constexpr double kAspectTolerance = 0.01;  // sizes are rounded to pixels
-  absl::StatusOr<StatedCamera> file = ReadCameraFile(path, flags.frame);
-  if (!file.ok()) return file.status();
-  const absl::StatusOr<Camera> sized = SizedCamera(file->camera, width, height);
-  if (!sized.ok()) {
-    return absl::InvalidArgumentError(absl::StrCat(path, ": ", sized.status().message()));
-  }
-  const Camera& camera = *sized;
-  const double scale_x = static_cast<double>(width) / camera.width;
-  const double scale_y = static_cast<double>(height) / camera.height;
-  if (!(std::abs(scale_x / scale_y - 1.0) <= kAspectTolerance)) {
-    return absl::InvalidArgumentError(absl::StrFormat(
-        "--camera %s: its image is %dx%d, %dx%d is asked for: want the same ratio of width to "
-        "height, such as %dx%d",
-        path,
-        camera.width,
-        camera.height,
-        width,
-        height,
-        width,
-        std::max(1, static_cast<int>(std::lround(scale_x * camera.height)))));
-  }
-  return ResizedCamera(camera, width, height);
-}
-
 }  // namespace
 
 void DeclareSceneFlags(CLI::App* app, SceneFlags* flags, const std::string& type_name) {
@@ -143,100 +100,6 @@ void DeclareSceneFlags(CLI::App* app, SceneFlags* flags, const std::string& type
       ->check(CLI::Range(1, kMaxRandomLights))
       ->group(group);
   app->add_option("--seed", flags->seed, "Of the random lights [1]")->type_name("N")->group(group);
-}
-
-absl::StatusOr<LoadedScene> LoadScene(const SceneFlags& flags) {
-  Scene scene;
-  int64_t num_dropped = 0;
-  if (flags.generator.has_value()) {
-    absl::StatusOr<Scene> generated = GenerateScene(*flags.generator);
-    if (!generated.ok()) return generated.status();
-    scene = *std::move(generated);
-  } else {
-    absl::StatusOr<SceneFile> file = ReadScene(flags.scene);
-    if (!file.ok()) return file.status();
-    scene = std::move(file->scene);
-    num_dropped = file->num_dropped;
-  }
-  absl::StatusOr<RayCaster> caster = RayCaster::Build(std::move(scene));
-  if (!caster.ok()) return caster.status();
-  num_dropped += caster->num_dropped_triangles();
-  const std::string title = flags.generator.has_value()
-                                ? flags.scene
-                                : std::filesystem::path(flags.scene).filename().string();
-  return LoadedScene{*std::move(caster), title, num_dropped};
-}
-
-std::string CameraPath(const SceneFlags& flags) {
-  const bool is_of_scene =
-      flags.camera.empty() && IsGltf(flags.scene) && !ContentsOf(flags.scene).cameras.empty();
-  return is_of_scene ? flags.scene : flags.camera;
-}
-
-bool TakesLightsOfScene(const SceneFlags& flags) {
-  return flags.lights.path.empty() && flags.lights.extra.empty() && flags.num_random_lights == 0 &&
-         IsGltf(flags.scene) && ContentsOf(flags.scene).num_lights > 0;
-}
-
-absl::StatusOr<Camera> MakeViewCamera(const SceneFlags& flags, int width, int height) {
-  const std::string path = CameraPath(flags);
-  if (path.empty()) {
-    return absl::InvalidArgumentError(
-        "no camera: want --camera EYE:TARGET such as --camera 0,1.7,18:0,0.5,0, or --camera FILE");
-  }
-  if (!flags.view.has_value()) return CameraFromFile(flags, path, width, height);
-  const ViewFlags& view = *flags.view;
-  const Eigen::Vector3d forward = view.target - view.eye;
-  if (!(forward.norm() > 0.0)) {
-    return absl::InvalidArgumentError(absl::StrCat("--camera ",
-                                                   flags.camera,
-                                                   ": eye and target are both ",
-                                                   PointText(view.eye),
-                                                   ", want two points"));
-  }
-  constexpr double kLeastSine = 1e-6;
-  const Eigen::Vector3d up = flags.up.stableNormalized();
-  if (!(forward.stableNormalized().cross(up).norm() > kLeastSine)) {
-    return absl::InvalidArgumentError(absl::StrCat("--up = ",
-                                                   PointText(flags.up),
-                                                   " is zero or along the view from ",
-                                                   PointText(view.eye),
-                                                   " to ",
-                                                   PointText(view.target),
-                                                   ", want another direction, such as --up ",
-                                                   std::abs(up.z()) < 0.5 ? "0,0,1" : "1,0,0"));
-  }
-  return LookAtCamera(view.eye, view.target, up, view.fov_deg * M_PI / 180.0, width, height);
-}
-
-absl::StatusOr<std::vector<Light>> SceneLights(const SceneFlags& flags) {
-  LightFlags given = flags.lights;
-  if (TakesLightsOfScene(flags)) given.path = flags.scene;
-  absl::StatusOr<std::vector<Light>> lights = ReadLights(given);
-  if (!lights.ok()) return lights.status();
-  if (flags.num_random_lights > 0) {
-    if (!(flags.up.norm() > 0.0)) {
-      return absl::InvalidArgumentError("--up = (0, 0, 0), want a direction for --random-lights");
-    }
-    std::set<std::string> names;
-    for (const Light& light : *lights) names.insert(light.name);
-    for (Light& light : RandomSuns(flags.num_random_lights, flags.seed, flags.up)) {
-      if (names.count(light.name) > 0) {
-        return absl::InvalidArgumentError(
-            absl::StrFormat("light \"%s\": is given and among the %d of --random-lights, want "
-                            "another name for the given one",
-                            light.name,
-                            flags.num_random_lights));
-      }
-      light.shadow_bit = static_cast<int>(lights->size() % kMaxLights);
-      lights->push_back(std::move(light));
-    }
-  }
-  if (lights->empty()) {
-    return absl::InvalidArgumentError(
-        "no lights: want --lights FILE, --light NAME=sun:X,Y,Z or --random-lights COUNT");
-  }
-  return ChooseLights(*lights, flags.only);
 }
 
 absl::StatusOr<SceneGeneratorOptions> ParseGenerator(const std::string& text) {

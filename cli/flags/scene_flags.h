@@ -2,7 +2,7 @@
 //
 // A scene, a camera and lights as they stand on the command line, for the verbs that render.
 // In:   words; wrong syntax is refused while parsing (exit code 1).
-// Out:  SceneFlags; from them the ray caster, the camera and the lights.
+// Out:  SceneFlags; scene_inputs.h makes the scene, the camera and the lights of them.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,10 +14,7 @@
 #include "absl/status/statusor.h"
 #include "base/frame_number.h"
 #include "cli/flags/light_flags.h"
-#include "geometry/camera.h"
-#include "geometry/light.h"
 #include "render/generator/scene_generator.h"
-#include "render/ray_caster.h"
 
 namespace CLI {
 class App;
@@ -47,31 +44,6 @@ struct SceneFlags {
 // Declares the positional SCENE and every option on `app`, to be parsed into `flags`, which must
 // stay where it is. `type_name` says in the help what the positional may be.
 void DeclareSceneFlags(CLI::App* app, SceneFlags* flags, const std::string& type_name = "SCENE");
-
-struct LoadedScene {
-  RayCaster caster;
-  std::string title;        // "sponza_atrium.glb", "generate:seed=1,..."
-  int64_t num_dropped = 0;  // triangles without area or with bad coordinates
-
-  int64_t num_triangles() const { return caster.scene().triangles.size(); }
-};
-
-absl::StatusOr<LoadedScene> LoadScene(const SceneFlags& flags);
-
-// The file of the camera: --camera, or the scene itself when none is given and it is a glTF file
-// with cameras. Empty: there is none.
-std::string CameraPath(const SceneFlags& flags);
-
-// Whether the lights are those of the scene: none is given, and it is a glTF file with lights.
-bool TakesLightsOfScene(const SceneFlags& flags);
-
-// The camera for an image of that size. A camera file of another size is scaled; another aspect
-// ratio is an error.
-absl::StatusOr<Camera> MakeViewCamera(const SceneFlags& flags, int width, int height);
-
-// The lights of --lights, --light and --random-lights, in this order; none is an error. Light i has
-// shadow bit i modulo kMaxLights: more of them than that do not fit into one read-back.
-absl::StatusOr<std::vector<Light>> SceneLights(const SceneFlags& flags);
 
 // "generate:seed=2,objects=10,triangles=50000,floor=20" or "generate:kind=room,seed=5", in any
 // order.

@@ -1,11 +1,14 @@
 #include "cli/flags/shot_flags.h"
 
 #include <CLI/CLI.hpp>
+#include <limits>
 #include <utility>
 
 #include "base/parallel.h"
 #include "cli/flags/fit_inputs.h"
 #include "cli/flags/frame_inputs.h"
+#include "cli/flags/number_checks.h"
+#include "cli/flags/readback_flags.h"
 #include "io/summary_file.h"
 #include "jobs/fit_comparison.h"
 
@@ -66,14 +69,14 @@ void DeclareTracker(CLI::App* app, ShotFlags* flags) {
                   flags->stability,
                   "0: the tightest map in every frame; 1: a map stays as long as it is valid [0.5]")
       ->type_name("0...1")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(NumberIn(0.0, 1.0))
       ->group(group);
   app->add_option("--replace-below",
                   flags->replace_below,
                   "A map is replaced when the median squared footprint falls below this share of "
                   "what it is with the one that is kept [by --stability]")
       ->type_name("SHARE")
-      ->check(CLI::NonNegativeNumber)
+      ->check(NumberIn(0.0, std::numeric_limits<double>::infinity()))
       ->group(group);
   app->add_option("--update-every",
                   flags->update_every_frames,
@@ -86,7 +89,7 @@ void DeclareTracker(CLI::App* app, ShotFlags* flags) {
                   "A new map makes this much room on every side for what comes into view, on top "
                   "of --margin-percent [by --stability]")
       ->type_name("PERCENT")
-      ->check(CLI::Range(0.0, 1000.0))
+      ->check(NumberIn(0.0, 1000.0))
       ->group(group);
 }
 

@@ -4,6 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "cli/flags/choice_option.h"
+#include "cli/flags/number_checks.h"
 #include "cli/flags/standard_streams.h"
 
 namespace lightfit::cli {
@@ -54,7 +55,7 @@ void DeclareTuneFlags(CLI::App* app, TuneFlags* flags) {
                   "Constant part of the practical bias, of the receivers' range of distances from "
                   "the light [0.0002]")
       ->type_name("SHARE")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(NumberIn(0.0, 1.0))
       ->group(group);
   DeclareMethodFlags(app, &flags->compare.fit.options);
   const std::string output = "Output";

@@ -288,6 +288,8 @@ TEST_F(CompareTest, WrongUsageIsExitCodeOne) {
   ExpectError(CompareScene({"--phases", "3"}), 1, "--phases 3, want a square number");
   ExpectError(CompareScene({"--phases", "81"}), 1, "81");
   ExpectError(CompareScene({"--margin-percent", "nan"}), 1, "nan");
+  ExpectError(
+      CompareScene({"--bias-share", "nan"}), 1, "--bias-share: \"nan\", want a number from 0 to 1");
 }
 
 TEST_F(CompareTest, UnusableInputsAreNamed) {

@@ -47,7 +47,9 @@ TEST(CommandLine, WrongUsageIsExitCodeOne) {
   ExpectError(FitYard({"--no-such-option"}), 1, "--no-such-option");
   ExpectError(FitYard({"--map"}), 1, "--map");
   ExpectError(FitYard({"--margin-percent", "-1"}), 1, "--margin-percent");
-  ExpectError(FitYard({"--margin-percent", "nan"}), 1, "--margin-percent nan");
+  ExpectError(FitYard({"--margin-percent", "nan"}),
+              1,
+              "--margin-percent: \"nan\", want a number from 0 to 100");
   ExpectError(FitYard({"--as-published", "--search", "line"}), 1, "--as-published");
 }
 

@@ -3,9 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "absl/strings/str_cat.h"
 #include "io/lights_file.h"
 #include "io/readback_exr.h"
 #include "tests/cli/examples.h"
+#include "tests/jobs/compare/compare_scene.h"
+#include "tests/scenes/glb_bytes.h"
 #include "tests/testing/process.h"
 
 namespace lightfit {
@@ -101,6 +104,73 @@ TEST(Render, TakesTheCameraOfASceneFileAtAnySize) {
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.err, HasSubstr("light \"key\": casts no shadow"));
   ExpectError(RunLightfit(wide), 2, "180x180, 64x32 is asked for");
+}
+
+// Boxes on a floor with a camera half as wide as high, and a sun.
+std::string TallScene() {
+  const Scene scene = BoxesOnFloor();
+  std::vector<float> positions;
+  std::vector<uint32_t> corners;
+  for (const Eigen::Vector3f& vertex : scene.vertices) {
+    positions.insert(positions.end(), vertex.data(), vertex.data() + 3);
+  }
+  for (const Eigen::Vector3i& triangle : scene.triangles) {
+    corners.insert(corners.end(), triangle.data(), triangle.data() + 3);
+  }
+  const size_t num_bytes = sizeof(float) * positions.size();
+  return testing::GlbOf(
+      absl::StrCat(
+          R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0, 1, 2]}], "scene": 0,
+          "extensionsUsed": ["KHR_lights_punctual"],
+          "extensions": {"KHR_lights_punctual": {"lights": [{"type": "directional"}]}},
+          "nodes": [{"mesh": 0}, {"camera": 0, "translation": [0, 2, 11]},
+            {"name": "sun", "rotation": [-0.42, 0, 0, 0.91],
+             "extensions": {"KHR_lights_punctual": {"light": 0}}}],
+          "cameras": [{"type": "perspective",
+            "perspective": {"yfov": 1, "znear": 0.1, "aspectRatio": 0.5}}],
+          "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+          "accessors": [
+            {"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": )",
+          scene.vertices.size(),
+          R"(}, {"bufferView": 1, "componentType": 5125, "type": "SCALAR", "count": )",
+          corners.size(),
+          R"(}], "bufferViews": [{"buffer": 0, "byteLength": )",
+          num_bytes,
+          R"(}, {"buffer": 0, "byteOffset": )",
+          num_bytes,
+          R"(, "byteLength": )",
+          sizeof(uint32_t) * corners.size(),
+          R"(}], "buffers": [{"byteLength": )",
+          num_bytes + sizeof(uint32_t) * corners.size(),
+          "}]}"),
+      testing::BytesOf(positions) + testing::BytesOf(corners));
+}
+
+// All verbs that render take the shape of their image from the camera, where no size is asked for.
+TEST(Render, AndCompareTakeTheShapeOfTheImageFromTheScenesCamera) {
+  const TemporaryFolder folder;
+  const std::string scene = folder.Path("tall.glb"), exr = folder.Path("a.exr");
+  WriteFile(scene, TallScene());
+  const ProcessResult render = RunLightfit({"render", scene, "-o", exr});
+  EXPECT_EQ(render.exit_code, 0) << render.err;
+  EXPECT_THAT(render.out, HasSubstr("90x180 pixels"));
+  const std::vector<std::string> words = {
+      "compare", scene, "--map", "64x64", "--phases", "1", "--search", "focused"};
+  const ProcessResult compare = RunLightfit(words);
+  EXPECT_EQ(compare.exit_code, 0) << compare.err;
+  EXPECT_THAT(compare.out, HasSubstr("screen 375 x 750 pixels, read-back 127 x 255 pixels"));
+  // The camera of another file counts, and what was asked for.
+  std::vector<std::string> other = words, asked = words, square = words;
+  other.insert(other.end(), {"--camera", kYardLights});
+  const ProcessResult of_yard = RunLightfit(other);
+  EXPECT_THAT(of_yard.out, HasSubstr("screen 750 x 750 pixels")) << of_yard.err;
+  asked.insert(asked.end(), {"--screen", "60x120"});
+  EXPECT_THAT(RunLightfit(asked).out, HasSubstr("screen 60 x 120 pixels"));
+  square.insert(square.end(), {"--screen", "100x100"});
+  ExpectError(RunLightfit(square), 2, "its frame is 0.5 times as wide as high");
+  const ProcessResult tune =
+      RunLightfit({"tune", scene, "--map", "64x64", "--evaluations", "1", "--search", "focused"});
+  EXPECT_THAT(tune.out, HasSubstr("screen 375 x 750 pixels")) << tune.err;
 }
 
 TEST(Render, SaysWhatIsWrongWithTheScene) {

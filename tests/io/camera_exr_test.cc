@@ -8,32 +8,26 @@
 
 #include "absl/strings/str_format.h"
 #include "io/camera_file.h"
+#include "tests/io/camera_conventions.h"
 #include "tests/io/exr_file.h"
 #include "tests/io/testing.h"
 
 namespace lightfit {
 namespace {
 
+using testing::Convention;
+using testing::ConventionOfBits;
 using testing::HasAll;
+using testing::kDoublePrecision;
+using testing::kHeight;
+using testing::kWidth;
 using testing::LargestScreenDifference;
+using testing::Read;
 using testing::StandardMatrices;
-using Convention = CameraConvention;
-
-constexpr int kWidth = 160;
-constexpr int kHeight = 90;
+using testing::WrittenAs;
 
 // Attributes are single precision: 1e-7 of numbers around 10, times a focal length around 1.
 constexpr double kSinglePrecision = 1e-6;
-constexpr double kDoublePrecision = 1e-10;
-
-Convention ConventionOfBits(int bits) {
-  return {static_cast<Convention::Layout>(bits & 1),
-          static_cast<Convention::NdcRange>(bits >> 1 & 1),
-          static_cast<Convention::NdcY>(bits >> 2 & 1),
-          static_cast<Convention::ViewAxis>(bits >> 3 & 1),
-          static_cast<Convention::NdcW>(bits >> 4 & 1),
-          static_cast<Convention::NdcSpan>(bits >> 5 & 1)};
-}
 
 // An orthographic standard pair: the frame is 8 by 4.5 world units.
 StandardMatrices StandardOrthographic() {
@@ -43,42 +37,6 @@ StandardMatrices StandardOrthographic() {
   ndc_from_camera.row(1) << 0.0, -1.0 / 4.5, 0.0, 0.5;
   ndc_from_camera.row(2) << 0.0, 0.0, 0.01, 0.0;
   return {camera_from_world.transpose(), (ndc_from_camera * camera_from_world).transpose()};
-}
-
-// What a renderer of the given convention writes for the camera of `standard`.
-StandardMatrices WrittenAs(const Convention& convention,
-                           const StandardMatrices& standard,
-                           int width,
-                           int height) {
-  Eigen::Matrix4d camera = standard.world_to_camera.transpose();
-  Eigen::Matrix4d ndc = standard.world_to_ndc.transpose();
-  const Eigen::RowVector4d w = ndc.row(3);
-  if (convention.ndc_span == Convention::NdcSpan::kShorterSide) {
-    const int longer = width > height ? 0 : 1;
-    const double ratio = static_cast<double>(std::max(width, height)) / std::min(width, height);
-    ndc.row(longer) = 0.5 * w + (ndc.row(longer) - 0.5 * w) * ratio;
-  }
-  if (convention.ndc_y == Convention::NdcY::kUp) ndc.row(1) = w - ndc.row(1);
-  if (convention.ndc_range == Convention::NdcRange::kMinusOneToOne) {
-    ndc.row(0) = 2.0 * ndc.row(0) - w;
-    ndc.row(1) = 2.0 * ndc.row(1) - w;
-  }
-  if (convention.ndc_w == Convention::NdcW::kNegative) ndc.row(3) = -w;
-  if (convention.view_axis == Convention::ViewAxis::kMinusZ) camera.row(2) = -camera.row(2);
-  if (convention.layout == Convention::Layout::kColumnVectors) return {camera, ndc};
-  return {camera.transpose(), ndc.transpose()};
-}
-
-absl::StatusOr<Camera> Read(const StandardMatrices& matrices,
-                            const CameraExrOptions& options = {}) {
-  return CameraFromExrMatrices(
-      matrices.world_to_camera, matrices.world_to_ndc, kWidth, kHeight, options);
-}
-
-absl::StatusOr<Camera> Read(const StandardMatrices& matrices, const Convention& convention) {
-  CameraExrOptions options;
-  options.convention = convention;
-  return Read(matrices, options);
 }
 
 TEST(CameraExr, ReadsTheStandard) {
@@ -261,85 +219,6 @@ TEST(CameraExr, NonSquarePixelsMustBeStated) {
   const auto camera = Read(matrices, options);
   ASSERT_TRUE(camera.ok()) << camera.status();
   EXPECT_NEAR(camera->screen_from_camera(0, 0), 1.2 * kHeight / 2.0, kDoublePrecision);
-}
-
-// The standard pair whose axis meets the frame there.
-StandardMatrices Shifted(double x, double y) {
-  StandardMatrices matrices = testing::Standard(kWidth, kHeight);
-  Eigen::Matrix4d ndc = matrices.world_to_ndc.transpose();
-  ndc.row(0) += (x - 0.5) * ndc.row(3);
-  ndc.row(1) += (y - 0.5) * ndc.row(3);
-  matrices.world_to_ndc = ndc.transpose();
-  return matrices;
-}
-
-Convention WithAnyCentre(Convention convention) {
-  convention.frame_centre = Convention::FrameCentre::kAnywhere;
-  return convention;
-}
-
-TEST(CameraExr, AnyLensShiftIsReadWhenStated) {
-  for (const auto& [x, y] : {std::pair{0.65, 0.5}, {0.95, 0.2}, {0.0, 0.0}, {-3.5, 1.5}}) {
-    for (int bits = 0; bits < 64; ++bits) {
-      const Convention convention = WithAnyCentre(ConventionOfBits(bits));
-      const auto camera = Read(WrittenAs(convention, Shifted(x, y), kWidth, kHeight), convention);
-      ASSERT_TRUE(camera.ok()) << CameraConventionWords(convention) << ": " << camera.status();
-      EXPECT_NEAR(camera->screen_from_camera(0, 2), x * kWidth, kDoublePrecision);
-      EXPECT_NEAR(camera->screen_from_camera(1, 2), y * kHeight, kDoublePrecision);
-    }
-  }
-}
-
-TEST(CameraExr, LensShiftsAreReadUnstatedWhereTheOtherRangeIsNoLikelier) {
-  for (const auto& [x, y] : {std::pair{0.65, 0.5}, {0.95, 0.2}, {0.9, 0.1}, {0.9, 0.15}}) {
-    const auto camera = Read(Shifted(x, y));
-    ASSERT_TRUE(camera.ok()) << camera.status();
-    EXPECT_NEAR(camera->screen_from_camera(0, 2), x * kWidth, kDoublePrecision);
-    EXPECT_NEAR(camera->screen_from_camera(1, 2), y * kHeight, kDoublePrecision);
-  }
-}
-
-TEST(CameraExr, AShiftThatMayBeTheOtherRangeIsRefusedWithBothOptions) {
-  const auto camera = Read(Shifted(0.1, 0.5));
-  ASSERT_FALSE(camera.ok());
-  EXPECT_TRUE(HasAll(camera.status().message(),
-                     {"(0.1, 0.5)",
-                      "--camera-convention shifted",
-                      "(0.55, 0.75)",
-                      "--camera-convention ndc-minus-1-1"}));
-}
-
-// Of all conventions and shifts, unstated: what is read wrongly is read with the axis nearer to the
-// middle than it was, or within what most lenses have; and never with the axis in the very middle.
-TEST(CameraExr, NoShiftMakesAWrongConventionLikelier) {
-  int num_right = 0, num_refused = 0, num_likelier = 0;
-  for (double x = -1.0; x <= 2.0; x += 0.3) {
-    for (double y = -1.0; y <= 2.0; y += 0.3) {
-      const StandardMatrices standard = Shifted(x, y);
-      const auto truth = Read(standard, WithAnyCentre({}));
-      ASSERT_TRUE(truth.ok()) << truth.status();
-      for (int bits = 0; bits < 64; ++bits) {
-        const Convention convention = ConventionOfBits(bits);
-        if ((bits & 24) == 24) continue;  // number for number the standard, looking the other way
-        const auto camera = Read(WrittenAs(convention, standard, kWidth, kHeight));
-        if (!camera.ok()) {
-          ++num_refused;
-        } else if (LargestScreenDifference(*truth, *camera, 20) <= kDoublePrecision) {
-          ++num_right;
-        } else {
-          ++num_likelier;
-          EXPECT_TRUE(FrameShift(*camera) <= kLikelyFrameShift ||
-                      FrameShift(*camera) <= FrameShift(*truth))
-              << CameraConventionWords(convention) << " " << x << " " << y;
-          EXPECT_GE(FrameShift(*truth), kLikelyFrameShift - kDoublePrecision);
-        }
-      }
-    }
-  }
-  std::cout << num_right << " right, " << num_refused << " refused, " << num_likelier
-            << " read as the likelier convention\n";
-  // Only the other range can be taken for a shift.
-  EXPECT_LT(num_likelier, 11 * 11);
 }
 
 // Cameras far from the origin lose digits in single precision, and must not be refused for it.

@@ -1,5 +1,7 @@
 // Totals of hand-made comparisons, and the pieces of their picture.
 
+#include "picture/compare_page.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -78,6 +80,60 @@ TEST(ShadeShadows, TintsByTheMapThatIsAsked) {
   EXPECT_TRUE(differ(tinted.At(1, 0), plain.At(1, 0)));
   EXPECT_TRUE(differ(tinted.At(2, 0), tinted.At(1, 0)));
   EXPECT_FALSE(differ(tinted.At(3, 0), plain.At(3, 0)));
+}
+
+// Two methods that get nothing wrong on a screen of a few pixels, magnified.
+class ComparePage : public ::testing::Test {
+ protected:
+  static constexpr int kMargin = 36, kTitleBottom = 62;  // pixels of the page
+
+  ComparePage() {
+    stage_.screen.camera.width = 8;
+    stage_.screen.camera.height = 6;
+    stage_.screen.pixels.resize(48);
+    for (SurfacePoint& pixel : stage_.screen.pixels) {
+      pixel.triangle = 0;
+      pixel.normal = Eigen::Vector3d::UnitY();
+    }
+    light_ = OneLight("sun", {Row("focused", 0, 0, 2), Row("lightfit", 0, 0, 1)});
+    light_.truth.assign(48, Lighting::kLit);
+    for (ComparedRow& row : light_.rows) row.image.ideal = row.image.practical = light_.truth;
+  }
+
+  Image Drawn(const std::string& title) const {
+    return DrawComparePicture(stage_, light_, {.title = title, .maps = "map"}, typeface_).ToImage();
+  }
+
+  // Columns with ink in the line of the title.
+  static std::vector<int> TitleColumns(const Image& page) {
+    std::vector<int> columns;
+    for (int x = 0; x < page.width(); ++x) {
+      for (int y = 0; y < kTitleBottom; ++y) {
+        if (std::abs(page.At(x, y).r - page.At(0, 0).r) < 0.05f) continue;
+        columns.push_back(x);
+        break;
+      }
+    }
+    return columns;
+  }
+
+  const Typeface typeface_ = Typeface::Find();
+  CompareStage stage_;
+  LightComparison light_;
+};
+
+TEST_F(ComparePage, TheTitleIsCutOnlyWhereThereIsNoRoom) {
+  if (!typeface_.found()) GTEST_SKIP() << "no typeface on this machine (fonts-dejavu-core)";
+  const std::string name = "courtyard_of_the_old_mill_before_noon_v042.glb";
+  ASSERT_GT(name.size(), 40u);
+  std::string other = name;
+  other[16] = 'W';
+  EXPECT_NE(TitleColumns(Drawn(name)), TitleColumns(Drawn(other)));  // nothing of it is left out
+
+  const Image page = Drawn(std::string(300, 'o') + ".glb");
+  const std::vector<int> columns = TitleColumns(page);
+  EXPECT_LT(columns.back(), page.width() - kMargin);
+  EXPECT_GT(columns.back(), page.width() - kMargin - 60);  // no more than a few letters of room
 }
 
 TEST(BestCrop, IsTheLargestSumOfAll) {

@@ -77,6 +77,24 @@ TEST_F(TypefaceTest, DrawsWhatItMeasures) {
   EXPECT_GT(Sum(image), 100);
 }
 
+TEST_F(TypefaceTest, ShortensWhatHasNoRoomAndNothingElse) {
+  const std::string text = "a_scene_with_quite_a_long_name_für_alle_\xe2\x98\x83s_of_winter.glb";
+  const int width = typeface_.Width(text, kStyle);
+  EXPECT_EQ(typeface_.Fitted(text, width, kStyle), text);
+  std::string last;
+  for (int room = 80; room < width; room += 7) {
+    const std::string fitted = typeface_.Fitted(text, room, kStyle);
+    EXPECT_LE(typeface_.Width(fitted, kStyle), room) << fitted;
+    // One letter more, of some 20 pixels at most, would have no room.
+    EXPECT_GT(typeface_.Width(fitted, kStyle), room - 20) << fitted;
+    EXPECT_EQ(fitted.front(), 'a');
+    EXPECT_EQ(fitted.back(), 'b');
+    EXPECT_GE(fitted.size(), last.size());
+    last = fitted;
+  }
+  EXPECT_EQ(typeface_.Fitted(text, 0, kStyle), "a....glb");
+}
+
 TEST_F(TypefaceTest, EveryScriptHasItsOwnLetters) {
   const std::vector<std::string> names = {
       "Schlüssel", "Schlussel", "Свет", "Φως", "Ljósið", "Ánh sáng", "אור", "ضوء", "света"};

@@ -8,8 +8,10 @@
 #include <algorithm>
 #include <regex>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "cli/command_line/command_line.h"
+#include "cli/command_line/declared.h"
 #include "cli/command_line/option_words.h"
 #include "io/readback_exr_write.h"
 #include "tests/cli/box_shot.h"
@@ -21,6 +23,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 std::string FitJson(const std::vector<std::string>& more) {
   std::vector<std::string> words = {"fit",
@@ -188,6 +191,51 @@ TEST(Messages, NameOptionsAndNoFieldsOfTheLibrary) {
                                                     << result.err;
   }
   EXPECT_GE(num_messages, 80);
+}
+
+// Of all verbs, whatever takes no name: found by what the help calls their values.
+TEST(Numbers, NaNIsRefusedByEveryOptionBeforeAnyWork) {
+  const auto is_name = [](const std::string& value) {
+    for (const char* word :
+         {"FILE", ".json", "FOLDER", "LIGHT", "CHANNEL", "FORMAT", "VIEW", "HOST:PORT", "NAME"}) {
+      if (absl::StrContains(value, word)) return true;
+    }
+    return false;
+  };
+  const cli::CommandLine line = cli::MakeCommandLine();
+  int num_options = 0;
+  for (const CLI::App* verb : cli::DeclaredVerbs(*line.app)) {
+    for (const CLI::Option* option : cli::DeclaredOptions(*verb)) {
+      const std::string value = cli::ValueWord(*option);
+      if (option->get_items_expected_max() == 0 || is_name(value)) continue;
+      const std::string name = cli::NamesOf(*option).back();
+      std::string answer;
+      try {
+        line.app->parse(std::vector<std::string>{"nan", name, verb->get_name()});  // from its end
+      } catch (const CLI::ParseError& error) {
+        answer = error.what();
+      }
+      EXPECT_THAT(answer, AllOf(HasSubstr(name), HasSubstr("nan")))
+          << verb->get_name() << " " << value;
+      ++num_options;
+    }
+  }
+  EXPECT_GE(num_options, 100);
+  const ProcessResult result =
+      RunLightfit({"compare", kYard, "--lights", kYardLights, "--bias-share", "nan"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.err, HasSubstr("--bias-share: \"nan\", want a number from 0 to 1"));
+  EXPECT_THAT(result.out, IsEmpty());
+}
+
+TEST(Numbers, ABackgroundMayBeInfinite) {
+  const ProcessResult result =
+      RunLightfit({"fit", kYard, "--lights", kYardLights, "--only", "sun", "--background", "inf"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const ProcessResult refused =
+      RunLightfit({"fit", kYard, "--lights", kYardLights, "--background", "0"});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("--background: \"0\", want a number above 0, or inf"));
 }
 
 // Messages that are hard to provoke, as the library has them.

@@ -96,32 +96,6 @@ TEST(RandomSuns, TheFirstAreTheSameWhateverTheCount) {
   EXPECT_NE(RandomSuns(1, 10, Eigen::Vector3d::UnitY())[0].direction, few[0].direction);
 }
 
-TEST(SceneLights, NumbersGivenAndRandomLightsInOneRow) {
-  SceneFlags flags;
-  EXPECT_THAT(SceneLights(flags), StatusIs(kInvalid, HasSubstr("--random-lights")));
-  flags.lights.extra = {Light::Point("key", {1, 2, 3}), Light::Directional("sky", {0, -1, 0})};
-  flags.num_random_lights = 40;
-  const auto lights = SceneLights(flags);
-  ASSERT_THAT(lights, IsOk());
-  ASSERT_EQ(lights->size(), 42u);
-  EXPECT_EQ((*lights)[2].name, "sun001");
-  for (int i = 0; i < 42; ++i) EXPECT_EQ((*lights)[i].shadow_bit, i % kMaxLights);
-  flags.lights.extra[0].name = "sun007";
-  EXPECT_THAT(SceneLights(flags), StatusIs(kInvalid, HasSubstr("sun007")));
-}
-
-TEST(MakeViewCamera, NamesWhatIsWrongWithTheView) {
-  SceneFlags flags;
-  EXPECT_THAT(MakeViewCamera(flags, 10, 10), StatusIs(kInvalid, HasSubstr("no camera")));
-  flags.camera = "view";
-  flags.view = ViewFlags{{1, 2, 3}, {1, 2, 3}, 60.0};
-  EXPECT_THAT(MakeViewCamera(flags, 10, 10), StatusIs(kInvalid, HasSubstr("both (1, 2, 3)")));
-  flags.view->target = {1, 9, 3};
-  EXPECT_THAT(MakeViewCamera(flags, 10, 10), StatusIs(kInvalid, HasSubstr("--up 0,0,1")));
-  flags.up = Eigen::Vector3d::UnitX();
-  EXPECT_THAT(MakeViewCamera(flags, 10, 10), IsOk());
-}
-
 Scene Room() {
   Scene scene;
   for (const float y : {0.0F, 3.0F}) {
