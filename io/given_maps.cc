@@ -132,8 +132,16 @@ absl::StatusOr<Border> SingleBorder(const Struct& object) {
       absl::StrCat("border = \"", value->string_value(), "\", want \"lit\" or \"dark\""));
 }
 
-GivenMaps OneMap(const Eigen::Matrix4d& map_from_world, MapSize map, Border border) {
-  return {PlanOfOneMap(/*light_name=*/"", map_from_world, map, border)};
+absl::StatusOr<GivenMaps> OneMap(const Eigen::Matrix4d& map_from_world,
+                                 MapSize map,
+                                 Border border) {
+  if (!map_from_world.allFinite()) {
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "map_from_world: in texels of a map of %dx%d its numbers are too large for a double",
+        map.width,
+        map.height));
+  }
+  return GivenMaps{PlanOfOneMap(/*light_name=*/"", map_from_world, map, border)};
 }
 
 absl::StatusOr<GivenMaps> SingleMatrix(const Struct& object, MapSize map) {
