@@ -266,7 +266,7 @@ TEST_F(CompareTest, HelpHasUnitsAndExamples) {
   EXPECT_THAT(result.out,
               AllOf(HasSubstr("--random-lights"),
                     HasSubstr("texels [1024x1024]"),
-                    HasSubstr("pixels [750x750]"),
+                    HasSubstr("750x750 where it says nothing]"),
                     HasSubstr("Examples"),
                     HasSubstr("--metric")));
 }
