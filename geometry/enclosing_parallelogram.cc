@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "geometry/polar_of_difference.h"
+
 namespace lightfit {
 
 namespace {
@@ -22,63 +24,12 @@ constexpr double kShareTolerance = 1e-6;
 constexpr double kSlopeTolerance = 1e-7;
 constexpr int kMaxRounds = 30;
 
-// Edges count as parallel when the sine of their angle is below this.
-constexpr double kParallelTolerance = 1e-12;
-
-// One vertex of the polar polygon (a breakpoint: the strip lies along an edge of the polygon) and
-// the antipodal pair that is touched from here to the next breakpoint.
-struct Breakpoint {
-  Eigen::Vector2d row;   // n / W(n)
-  Eigen::Vector2d pair;  // high - low of the pair after this breakpoint
-  int low, high;         // that pair
-};
-
 // A point on the polar polygon's boundary: row = breakpoint, or between it and the next.
 struct Row {
   Eigen::Vector2d value = Eigen::Vector2d::Zero();
   int index = 0;
   bool at_breakpoint = true;
 };
-
-// Half the boundary of the polar of K - K; the other half is its mirror image.
-ScratchVector<Breakpoint> PolarOfDifference(const Polygon& points) {
-  const int n = static_cast<int>(points.size());
-  const auto next = [n](int i) { return i + 1 == n ? 0 : i + 1; };
-  const auto edge = [&](int i) -> Eigen::Vector2d { return points[next(i)] - points[i]; };
-
-  // Calipers: `low` starts an edge whose opposite vertex is `high`, the first of those furthest
-  // away. Not found by comparing edge directions: neighbouring edges may be collinear to rounding.
-  const auto distance = [&](int i) { return Cross(edge(0), points[i] - points[0]); };
-  double furthest = 0.0;
-  for (int i = 2; i < n; ++i) furthest = std::max(furthest, distance(i));
-  int low = 0, high = 2;
-  while (high + 1 < n && distance(high) < furthest * (1.0 - kParallelTolerance)) ++high;
-
-  ScratchVector<Breakpoint> polar;
-  polar.reserve(n);
-  const auto parallel = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-    return std::abs(Cross(a, b)) <= kParallelTolerance * a.norm() * b.norm();
-  };
-  // Together `low` and `high` pass n edges while the strip turns by half a turn.
-  for (int passed = 0; passed < n; ++passed) {
-    // The strip turns counter-clockwise; it next lies along the edge at `low` or that at `high`.
-    const Eigen::Vector2d edge_low = edge(low);
-    const Eigen::Vector2d edge_high = -edge(high);
-    const bool pass_low = Cross(edge_low, edge_high) >= 0.0;
-    const Eigen::Vector2d normal = Perpendicular(pass_low ? edge_low : edge_high);
-    const double width = normal.dot(points[high] - points[low]);
-    (pass_low ? low : high) = next(pass_low ? low : high);
-    // Edges in one direction share a breakpoint, or rounding would make false valleys of them.
-    if (polar.empty() || !parallel(polar.back().row, normal)) {
-      polar.push_back({normal / width, Eigen::Vector2d::Zero(), low, high});
-    }
-    polar.back().low = low;
-    polar.back().high = high;
-    polar.back().pair = points[high] - points[low];
-  }
-  if (polar.size() > 2 && parallel(polar.back().row, polar.front().row)) polar.pop_back();
-  return polar;
-}
 
 // Two strips and their energy.
 struct StripPair {
@@ -88,12 +39,12 @@ struct StripPair {
 
 class StripSearch {
  public:
-  explicit StripSearch(ScratchVector<Breakpoint> polar)
+  explicit StripSearch(ScratchVector<PolarBreakpoint> polar)
       : polar_(std::move(polar)), size_(static_cast<int>(polar_.size())) {}
 
   int size() const { return size_; }
   bool is_finite() const {
-    return std::all_of(polar_.begin(), polar_.end(), [](const Breakpoint& breakpoint) {
+    return std::all_of(polar_.begin(), polar_.end(), [](const PolarBreakpoint& breakpoint) {
       return std::isfinite(breakpoint.row.squaredNorm());
     });
   }
@@ -243,13 +194,13 @@ class StripSearch {
 
   StripContacts Contacts(const Row& row) const {
     StripContacts contacts;
-    const Breakpoint& here = polar_[row.index];
+    const PolarBreakpoint& here = polar_[row.index];
     contacts.low_vertex = here.low;
     contacts.high_vertex = here.high;
     if (row.at_breakpoint) {
       // The pair before this breakpoint shares one vertex with the pair after it. Across the seam
       // of the half boundary low and high change places.
-      const Breakpoint& before = polar_[Wrap(row.index - 1)];
+      const PolarBreakpoint& before = polar_[Wrap(row.index - 1)];
       const int before_low = row.index == 0 ? before.high : before.low;
       const int before_high = row.index == 0 ? before.low : before.high;
       contacts.flush_on_high = before_low == here.low;
@@ -294,7 +245,7 @@ class StripSearch {
                double inverse_height_squared,
                Row* best,
                double* energy) const {
-    const Breakpoint& from = polar_[index];
+    const PolarBreakpoint& from = polar_[index];
     const Eigen::Vector2d to = NextRow(index);
     const Eigen::Vector2d& c = from.pair;
     // Q^-1 e up to scale, by Sherman-Morrison.
@@ -313,7 +264,7 @@ class StripSearch {
     }
   }
 
-  ScratchVector<Breakpoint> polar_;
+  ScratchVector<PolarBreakpoint> polar_;
   int size_;
 };
 

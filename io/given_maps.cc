@@ -132,12 +132,16 @@ absl::StatusOr<Border> SingleBorder(const Struct& object) {
       absl::StrCat("border = \"", value->string_value(), "\", want \"lit\" or \"dark\""));
 }
 
+// `of_light` stands before the field in an error.
 absl::StatusOr<GivenMaps> OneMap(const Eigen::Matrix4d& map_from_world,
                                  MapSize map,
-                                 Border border) {
+                                 Border border,
+                                 const std::string& of_light = "") {
   if (!map_from_world.allFinite()) {
     return absl::InvalidArgumentError(absl::StrFormat(
-        "map_from_world: in texels of a map of %dx%d its numbers are too large for a double",
+        "%sthe matrix has numbers that are too large for a double once it is in texels of a map of "
+        "%dx%d",
+        of_light,
         map.width,
         map.height));
   }
@@ -173,7 +177,7 @@ absl::StatusOr<GivenMaps> MatrixOfResult(const v1::LightResult& light,
     return absl::InvalidArgumentError(
         absl::StrFormat("%smap = %dx%d texels", of_light, own_map.width, own_map.height));
   }
-  return OneMap(ScaledTexels(own_map, map) * *matrix, map, *border);
+  return OneMap(ScaledTexels(own_map, map) * *matrix, map, *border, of_light);
 }
 
 absl::StatusOr<std::map<std::string, GivenMaps>> MapsOfResult(absl::string_view json, MapSize map) {

@@ -90,9 +90,8 @@ absl::StatusOr<LightMatrix> LayMatrix(const SearchInputs& inputs,
     matrix.figures.footprint.rms = std::sqrt(std::max(0.0, 0.5 * energy / summary.total_weight));
     if (!std::isfinite(matrix.figures.footprint.rms)) {
       return absl::InvalidArgumentError(
-          absl::StrFormat("light \"%s\": the summary's total_weight = %g is not that of its "
-                          "samples, whose energy is "
-                          "%g: it is damaged",
+          absl::StrFormat("light \"%s\": the summary is damaged: its total_weight = %g is not that "
+                          "of samples with an energy of %g; summarise its frames anew",
                           light.name,
                           summary.total_weight,
                           energy));

@@ -266,6 +266,12 @@ TEST(GivenMaps, SaysWhatIsWrong) {
        "border = \"grey\", want \"lit\" or \"dark\""},
       {std::string("{\"map_from_world\": ") + kFlat + ", \"border\": 2}", "border = "},
       {"{\"lights\": [{\"name\": \"sun\", \"direction\": [0, 0, -1]}]}", "none of them"},
+      {"{\"clip_from_world\": [1e308, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}",
+       "too large for a double once it is in texels of a map of 400x300"},
+      {"{\"lights\": [{\"name\": \"sun\", \"map\": {\"width\": 1, \"height\": 1}, "
+       "\"mapFromWorld\": "
+       "{\"m\": [1e308, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}}]}",
+       "light \"sun\": the matrix has numbers that are too large"},
       {"{\"lights\": 3}", "JSON"}};
   for (const auto& [json, words] : files) {
     SCOPED_TRACE(json);
