@@ -1,5 +1,6 @@
 #include "geometry/sized_camera.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
@@ -36,6 +37,16 @@ absl::StatusOr<Camera> SizedCamera(const Camera& camera, int width, int height) 
   lens(0, 2) = (camera.screen_from_camera(0, 2) + 0.5) * width;
   lens(1, 2) = (camera.screen_from_camera(1, 2) + 0.5) * height;
   return sized;
+}
+
+Camera ResizedCamera(const Camera& camera, int width, int height) {
+  Camera resized = camera;
+  resized.width = width;
+  resized.height = height;
+  const Eigen::Vector3d scale(
+      static_cast<double>(width) / camera.width, static_cast<double>(height) / camera.height, 1.0);
+  resized.screen_from_camera = scale.asDiagonal() * camera.screen_from_camera;
+  return resized;
 }
 
 }  // namespace lightfit

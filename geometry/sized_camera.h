@@ -1,6 +1,7 @@
 // geometry/sized_camera.h
 //
-// Cameras that state a lens but no size of the image, as scene files have them.
+// Cameras for an image of a given size: of those that state a lens but no size, as scene files have
+// them, and the same view in an image of another size.
 // In:   a Camera, with a size or without; width and height in pixels.
 // Out:  the Camera of an image of that size.
 //
@@ -22,5 +23,9 @@ absl::StatusOr<Camera> SizedCamera(const Camera& camera, int width, int height);
 
 // Width by height of the frame of a camera without a size; 0 when any.
 double FrameRatio(const Camera& camera);
+
+// Of one with a size, whose image spans the same field of view. Pixels become other than square
+// where the ratio of the sizes does.
+Camera ResizedCamera(const Camera& camera, int width, int height);
 
 }  // namespace lightfit

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "absl/strings/str_format.h"
-#include "geometry/resized_camera.h"
+#include "geometry/sized_camera.h"
 #include "io/camera_exr_input.h"
 #include "io/exr/channels.h"
 #include "io/exr/depth.h"

@@ -26,7 +26,7 @@
 #include <vector>
 
 #include "bench/scene_run.h"
-#include "geometry/resized_camera.h"
+#include "geometry/sized_camera.h"
 #include "partition/published/light_partition.h"
 #include "render/surface_image.h"
 

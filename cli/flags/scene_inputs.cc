@@ -10,7 +10,6 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "cli/flags/fit_inputs.h"
-#include "geometry/resized_camera.h"
 #include "geometry/sized_camera.h"
 #include "io/camera_file.h"
 #include "render/random_suns.h"

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "geometry/affine_depth.h"
-#include "geometry/resized_camera.h"
+#include "geometry/sized_camera.h"
 #include "methods/dominant_plane.h"
 #include "optimizer/figures/footprint_image.h"
 #include "optimizer/readback/surfaces.h"

@@ -1,7 +1,7 @@
 #include "optimizer/readback/fine_cover.h"
 
 #include "absl/strings/str_format.h"
-#include "geometry/resized_camera.h"
+#include "geometry/sized_camera.h"
 
 namespace lightfit {
 
